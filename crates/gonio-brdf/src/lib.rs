@@ -1,0 +1,1 @@
+//! Reflection functions: models, measured tables, and the registry

@@ -1,0 +1,1 @@
+//! Environment maps: light from infinitely far away

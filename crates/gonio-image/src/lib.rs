@@ -1,0 +1,1 @@
+//! Pictures of light: pixel buffers, EXR, Radiance HDR, PNG, JPEG, tone mapping and differences

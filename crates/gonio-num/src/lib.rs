@@ -1,0 +1,19 @@
+//! The numbers that formulas are written over.
+//!
+//! Every formula of Gonio is written **once**, generic over [`Real`]. That one source serves `f32` for a single ray,
+//! `f64` for reference values, [`Lanes`](lanes::Lanes) for batches, [`Dual`](dual::Dual) for derivatives and
+//! [`Expr`](expr::Expr) to print shader code.
+//!
+//! The key decision is reproducibility: a formula gives the same bits on every processor. So nothing here fuses a
+//! multiplication with an addition, and the transcendental functions are our own for `f32` (lanes use the very same
+//! polynomials) and the portable `libm` for `f64`; the platform's are never called.
+//!
+//! This crate is floor 0. It knows numbers, vectors, frames and transforms; it knows nothing of light.
+
+mod frame;
+mod real;
+mod vec3;
+
+pub use frame::Frame;
+pub use real::{Mask, Real, Table1, Table2};
+pub use vec3::Vec3;

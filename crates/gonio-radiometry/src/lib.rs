@@ -1,0 +1,1 @@
+//! Radiometry: quantities and units, spectra and colour, directions, solid angles, quadrature, sampling

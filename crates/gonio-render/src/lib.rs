@@ -1,0 +1,1 @@
+//! The reflection equation solved over a scene: integrators, film, radiometric sensors

@@ -1,0 +1,1 @@
+//! Scenes: shapes, ray queries, materials, lights, cameras, and readers

@@ -1,0 +1,1 @@
+//! Evidence about reflection functions: closures in, verdicts out

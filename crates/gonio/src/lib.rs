@@ -1,0 +1,1 @@
+//! A reflectance laboratory and reference renderer
