@@ -39,7 +39,11 @@ impl<R: Real> Frame<R> {
         let s = across * length2.max(R::lit(1e-37)).sqrt().recip();
         let fallback = Self::from_normal(n);
         let s = Vec3::select(bad, fallback.s, s);
-        Self { s, t: n.cross(s), n }
+        Self {
+            s,
+            t: n.cross(s),
+            n,
+        }
     }
 
     /// World to local coordinates.

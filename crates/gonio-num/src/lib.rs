@@ -10,10 +10,12 @@
 //!
 //! This crate is floor 0. It knows numbers, vectors, frames and transforms; it knows nothing of light.
 
+mod affine;
 mod frame;
 mod real;
 mod vec3;
 
+pub use affine::Affine3;
 pub use frame::Frame;
 pub use real::{Mask, Real, Table1, Table2};
 pub use vec3::Vec3;
