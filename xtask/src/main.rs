@@ -1,0 +1,33 @@
+//! Checks and chores of this repository, run as `cargo xtask NAME`.
+
+mod house;
+
+use std::process::ExitCode;
+
+const HELP: &str = "\
+Usage: cargo xtask <check>
+
+  floors   no crate depends on a higher floor, or on another of its own
+  files    no source file is longer than 600 lines
+  house    both of them";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let outcome = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["floors"] => house::floors(),
+        ["files"] => house::files(),
+        ["house"] => house::floors().and_then(|()| house::files()),
+        ["help" | "--help" | "-h"] => {
+            println!("{HELP}");
+            Ok(())
+        }
+        _ => Err(format!("unknown arguments {arguments:?}\n\n{HELP}")),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("error: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
