@@ -1,0 +1,79 @@
+//! The entry point: every property of one subject.
+
+use crate::property;
+use crate::report::Report;
+use crate::settings::{Effort, Settings};
+use crate::subject::{EvalFn, Expectation, Subject};
+
+/// Checks every property of `subject` against what it declares.
+///
+/// The random numbers are derived from `seed_name` and the property alone: the same arguments give the same report.
+/// The bounds are those of double precision and of a function that only reflects; [`Checker`] has the other choices.
+pub fn check(
+    subject: &Subject,
+    expect: &Expectation,
+    effort: Effort,
+    seed_name: impl AsRef<str>,
+) -> Report {
+    Checker::new(subject, expect, effort).run(seed_name)
+}
+
+/// A check with all its choices.
+///
+/// ```
+/// use gonio_verify::{Checker, Effort, Expectation, Precision, Settings, Subject};
+/// let lambertian = |wi: gonio_num::Vec3<f64>, wo: gonio_num::Vec3<f64>| {
+///     let f = if wi.z > 0.0 && wo.z > 0.0 { 0.8 / std::f64::consts::PI } else { 0.0 };
+///     [f; 3]
+/// };
+/// let subject = Subject::new("lambertian", &lambertian);
+/// let report = Checker::new(&subject, &Expectation::PHYSICAL, Effort::Quick)
+///     .settings(Settings::new(Effort::Quick).with_precision(Precision::Single))
+///     .run("documentation");
+/// assert!(report.passed(), "{report}");
+/// ```
+pub struct Checker<'a> {
+    pub(crate) subject: &'a Subject<'a>,
+    pub(crate) expect: Expectation,
+    pub(crate) settings: Settings,
+    pub(crate) components: &'a [&'a EvalFn<'a>],
+    pub(crate) seed_name: String,
+    effort: Effort,
+}
+
+impl<'a> Checker<'a> {
+    /// A check of `subject` with the usual settings of `effort`.
+    pub fn new(subject: &'a Subject<'a>, expect: &Expectation, effort: Effort) -> Self {
+        Self {
+            subject,
+            expect: *expect,
+            settings: Settings::new(effort),
+            components: &[],
+            seed_name: String::new(),
+            effort,
+        }
+    }
+
+    /// Other sample counts and bounds.
+    pub fn settings(mut self, settings: Settings) -> Self {
+        self.settings = settings;
+        self
+    }
+
+    /// The functions whose sum the subject claims to be, for [`crate::Property::Linearity`].
+    pub fn components(mut self, components: &'a [&'a EvalFn<'a>]) -> Self {
+        self.components = components;
+        self
+    }
+
+    /// Runs every property with random numbers derived from `seed_name`.
+    pub fn run(mut self, seed_name: impl AsRef<str>) -> Report {
+        self.seed_name = seed_name.as_ref().to_owned();
+        Report {
+            subject: self.subject.name.clone(),
+            effort: self.effort,
+            seed_name: self.seed_name.clone(),
+            verdicts: property::all(&self),
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! Statistical tests with their p-values.
+
+mod moments;
+
+pub use moments::Moments;
