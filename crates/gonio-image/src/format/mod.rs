@@ -1,0 +1,123 @@
+//! One file a format, and the choice among them.
+
+pub(crate) mod openexr;
+mod primaries;
+pub(crate) mod radiance;
+pub(crate) mod raster;
+
+pub(crate) use primaries::{apply as apply_matrix, to_rec709};
+
+use crate::{Image, ImageError, Limits, RawData, RawImage};
+use std::path::Path;
+
+/// The name of a file that is none.
+pub(crate) const MEMORY: &str = "<memory>";
+
+/// A file format that this crate knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FileFormat {
+    /// OpenEXR, `.exr`.
+    Exr,
+    /// Radiance RGBE, `.hdr` or `.pic`.
+    Hdr,
+    /// Portable Network Graphics, `.png`.
+    Png,
+    /// JPEG, `.jpg` or `.jpeg`; read only.
+    Jpeg,
+}
+
+impl FileFormat {
+    /// The format whose files begin with these bytes.
+    pub fn of_content(bytes: &[u8]) -> Option<Self> {
+        const MAGIC: [(&[u8], FileFormat); 5] = [
+            (&[0x76, 0x2f, 0x31, 0x01], FileFormat::Exr),
+            (b"#?RADIANCE", FileFormat::Hdr),
+            (b"#?RGBE", FileFormat::Hdr),
+            (b"\x89PNG\r\n\x1a\n", FileFormat::Png),
+            (&[0xff, 0xd8, 0xff], FileFormat::Jpeg),
+        ];
+        MAGIC
+            .iter()
+            .find(|(magic, _)| bytes.starts_with(magic))
+            .map(|&(_, format)| format)
+    }
+
+    /// The format of files with this name's extension, in capitals or not.
+    ///
+    /// # Errors
+    /// `Unsupported` for another extension, or none.
+    pub fn of_extension(path: &Path) -> Result<Self, ImageError> {
+        let extension = path
+            .extension()
+            .map(|e| e.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
+            Some("exr") => Ok(Self::Exr),
+            Some("hdr" | "pic") => Ok(Self::Hdr),
+            Some("png") => Ok(Self::Png),
+            Some("jpg" | "jpeg") => Ok(Self::Jpeg),
+            other => Err(ImageError::unsupported(
+                path.display().to_string(),
+                other.map_or_else(
+                    || "a name without an extension".into(),
+                    |e| format!("the extension `{e}`"),
+                ),
+                "use .exr, .hdr or .png",
+            )),
+        }
+    }
+}
+
+/// The format of `bytes`, or an error that says what they begin with.
+fn sniff(file: &str, bytes: &[u8]) -> Result<FileFormat, ImageError> {
+    FileFormat::of_content(bytes).ok_or_else(|| {
+        let found = if bytes.is_empty() {
+            "an empty file".into()
+        } else {
+            let start: Vec<String> = bytes.iter().take(8).map(|b| format!("{b:02x}")).collect();
+            format!("bytes {}", start.join(" "))
+        };
+        ImageError::format(file, "start", found, "EXR, Radiance HDR, PNG or JPEG")
+    })
+}
+
+pub(crate) fn decode_image(file: &str, bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
+    match sniff(file, bytes)? {
+        FileFormat::Exr => openexr::decode_image(file, bytes, limits),
+        FileFormat::Hdr => radiance::decode(file, bytes, limits),
+        kind @ (FileFormat::Png | FileFormat::Jpeg) => Ok(Image::from(&raster::decode(
+            file,
+            bytes,
+            kind,
+            raster::Orientation::Apply,
+            limits,
+        )?)),
+    }
+}
+
+pub(crate) fn decode_raw(
+    file: &str,
+    bytes: &[u8],
+    limits: &Limits,
+) -> Result<RawImage, ImageError> {
+    match sniff(file, bytes)? {
+        FileFormat::Exr => openexr::decode_raw(file, bytes, limits),
+        FileFormat::Hdr => {
+            let image = radiance::decode(file, bytes, limits)?;
+            Ok(RawImage {
+                width: image.width,
+                height: image.height,
+                data: RawData::F32(
+                    image
+                        .pixels
+                        .iter()
+                        .map(|&[r, g, b]| [r, g, b, 1.0])
+                        .collect(),
+                ),
+                has_alpha: false,
+            })
+        }
+        kind @ (FileFormat::Png | FileFormat::Jpeg) => {
+            raster::decode(file, bytes, kind, raster::Orientation::Ignore, limits)
+        }
+    }
+}

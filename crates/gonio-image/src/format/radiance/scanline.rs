@@ -1,0 +1,158 @@
+//! One scan line of RGBE pixels: flat, old run lengths, new run lengths.
+
+/// Lengths for which new run lengths are defined.
+const NEW_LENGTHS: std::ops::RangeInclusive<usize> = 8..=32_767;
+/// The longest run, and the longest stretch of literal bytes, in new run lengths.
+const LONGEST_RUN: usize = 127;
+const LONGEST_LITERAL: usize = 128;
+
+/// Fills `line` from the start of `bytes`; returns how many bytes it took, or what was wrong.
+pub(super) fn decode(bytes: &[u8], line: &mut [[u8; 4]]) -> Result<usize, String> {
+    let n = line.len();
+    if NEW_LENGTHS.contains(&n)
+        && let Some(&[2, 2, high, low]) = bytes.first_chunk()
+        && high < 128
+    {
+        let claimed = usize::from(high) << 8 | usize::from(low);
+        if claimed != n {
+            return Err(format!("a scan line of {claimed} pixels"));
+        }
+        return decode_new(&bytes[4..], line).map(|used| used + 4);
+    }
+    decode_old(bytes, line)
+}
+
+/// Each of the four components in turn: a count above 128 is a run of one byte, one up to 128 a stretch of bytes.
+fn decode_new(bytes: &[u8], line: &mut [[u8; 4]]) -> Result<usize, String> {
+    let mut at = 0;
+    let mut next = |count: usize| -> Result<&[u8], String> {
+        let end = at + count;
+        let taken = bytes
+            .get(at..end)
+            .ok_or_else(|| "the end of the file".to_string())?;
+        at = end;
+        Ok(taken)
+    };
+    for component in 0..4 {
+        let mut x = 0;
+        while x < line.len() {
+            let code = usize::from(next(1)?[0]);
+            let (count, run) = if code > 128 {
+                (code - 128, true)
+            } else {
+                (code, false)
+            };
+            if count == 0 {
+                return Err(format!("a run of no pixels at pixel {x}"));
+            }
+            let left = line.len() - x;
+            if count > left {
+                return Err(format!(
+                    "{count} samples at pixel {x}, where {left} are left"
+                ));
+            }
+            let values = next(if run { 1 } else { count })?;
+            for (i, pixel) in line[x..x + count].iter_mut().enumerate() {
+                pixel[component] = values[if run { 0 } else { i }];
+            }
+            x += count;
+        }
+    }
+    Ok(at)
+}
+
+/// Pixels one after the other; (1, 1, 1, n) repeats the pixel before it n times, and each following such pixel counts
+/// 256 times as much.
+fn decode_old(bytes: &[u8], line: &mut [[u8; 4]]) -> Result<usize, String> {
+    let mut x = 0;
+    let mut at = 0;
+    let mut shift = 0;
+    while x < line.len() {
+        let Some(&pixel) = bytes[at..].first_chunk::<4>() else {
+            return Err(format!("the end of the file at pixel {x}"));
+        };
+        at += 4;
+        let [1, 1, 1, count] = pixel else {
+            line[x] = pixel;
+            x += 1;
+            shift = 0;
+            continue;
+        };
+        let left = line.len() - x;
+        // Past 24 bits a run is longer than any scan line, except one of no pixels.
+        let count = if shift > 24 && count > 0 {
+            usize::MAX
+        } else {
+            usize::from(count).checked_shl(shift).unwrap_or(0)
+        };
+        if count > left {
+            return Err(format!(
+                "a run longer than the {left} pixels left at pixel {x}"
+            ));
+        }
+        if x == 0 && count > 0 {
+            return Err("a run before the first pixel".into());
+        }
+        if count > 0 {
+            let before = line[x - 1];
+            line[x..x + count].fill(before);
+        }
+        x += count;
+        shift += 8;
+    }
+    Ok(at)
+}
+
+/// Appends `line` to `out`.
+pub(super) fn encode(line: &[[u8; 4]], out: &mut Vec<u8>) {
+    if !NEW_LENGTHS.contains(&line.len()) {
+        out.extend(line.iter().flat_map(|&p| not_a_run(p)));
+        return;
+    }
+    let n = line.len() as u16;
+    out.extend_from_slice(&[2, 2]);
+    out.extend_from_slice(&n.to_be_bytes());
+    let mut samples = Vec::with_capacity(line.len());
+    for component in 0..4 {
+        samples.clear();
+        samples.extend(line.iter().map(|p| p[component]));
+        encode_component(&samples, out);
+    }
+}
+
+/// In a flat scan line the pixel (1, 1, 1, n) means a run. The same colour with mantissas 2 and the exponent one lower says
+/// it too, exactly, but for exponent 0 (black) and 1 (which becomes black: the smallest value there is, 2⁻¹³⁵).
+/// (2, 2, h, l) with h < 128 means new run lengths only where those are defined, and there a scan line is never flat.
+fn not_a_run(pixel: [u8; 4]) -> [u8; 4] {
+    match pixel {
+        [1, 1, 1, 0] => [0; 4],
+        [1, 1, 1, e] => [2, 2, 2, e - 1],
+        other => other,
+    }
+}
+
+fn encode_component(samples: &[u8], out: &mut Vec<u8>) {
+    let run_at = |i: usize| {
+        samples[i..]
+            .iter()
+            .take(LONGEST_RUN)
+            .take_while(|&&s| s == samples[i])
+            .count()
+    };
+    let mut i = 0;
+    while i < samples.len() {
+        let run = run_at(i);
+        // Two equal bytes cost the same as literals and would break a stretch of them.
+        if run > 2 {
+            out.extend_from_slice(&[128 + run as u8, samples[i]]);
+            i += run;
+            continue;
+        }
+        let start = i;
+        while i < samples.len() && i - start < LONGEST_LITERAL && run_at(i) <= 2 {
+            i += 1;
+        }
+        out.push((i - start) as u8);
+        out.extend_from_slice(&samples[start..i]);
+    }
+}
