@@ -12,7 +12,9 @@
 //! [`statistics`] has the tests themselves, for anyone.
 
 mod check;
+mod cubature;
 mod directions;
+mod partition;
 mod property;
 mod report;
 mod rng;

@@ -1,9 +1,13 @@
 //! One module a property, or a group of properties that the same evaluations answer.
 
+mod density;
+mod energy;
+mod furnace;
 mod isotropy;
 mod linearity;
 mod reciprocity;
 mod signs;
+mod weight;
 
 use crate::check::Checker;
 use crate::rng::Rng;
@@ -12,13 +16,19 @@ use crate::verdict::{Property, Verdict};
 /// Every property, in the order of [`Property::ALL`].
 pub(crate) fn all(c: &Checker) -> Vec<Verdict> {
     let [finite, non_negative, horizon] = signs::check(c);
+    let [integral, density] = density::check(c);
+    let furnaces = furnace::measure(c);
     vec![
         finite,
         non_negative,
         horizon,
         reciprocity::check(c),
+        energy::check(c, &furnaces),
         isotropy::check(c),
         linearity::check(c),
+        integral,
+        density,
+        weight::check(c, &furnaces),
     ]
 }
 

@@ -1,0 +1,249 @@
+//! Reflection functions that are right, and ways to break them.
+
+use gonio_num::{Frame, Vec3};
+use gonio_verify::{Subject, SubjectSample};
+use std::f64::consts::{PI, TAU};
+
+pub type V = Vec3<f64>;
+
+/// A reflection function with all three operations.
+pub trait Reflection: Sync {
+    fn eval(&self, wi: V, wo: V) -> [f64; 3];
+    fn pdf(&self, wi: V, wo: V) -> f64;
+    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample>;
+}
+
+/// Runs `body` with `r` as a subject.
+pub fn with_subject<T>(name: &str, r: &dyn Reflection, body: impl FnOnce(&Subject) -> T) -> T {
+    let eval = |wi: V, wo: V| r.eval(wi, wo);
+    let pdf = |wi: V, wo: V| r.pdf(wi, wo);
+    let sample = |wo: V, u: [f64; 3]| r.sample(wo, u);
+    body(&Subject {
+        name: name.into(),
+        eval: &eval,
+        pdf: Some(&pdf),
+        sample: Some(&sample),
+    })
+}
+
+pub fn above(wi: V, wo: V) -> bool {
+    wi.z > 0.0 && wo.z > 0.0
+}
+
+/// A sample with the weight and density that `r` itself gives.
+pub fn consistent(r: &dyn Reflection, wi: V, wo: V) -> Option<SubjectSample> {
+    let pdf = r.pdf(wi, wo);
+    (pdf > 0.0).then(|| SubjectSample {
+        wi,
+        weight: r.eval(wi, wo).map(|f| f * wi.z.abs() / pdf),
+        pdf,
+        delta: false,
+    })
+}
+
+/// ρ/π, drawn by the cosine.
+pub struct Lambertian(pub f64);
+
+impl Reflection for Lambertian {
+    fn eval(&self, wi: V, wo: V) -> [f64; 3] {
+        let f = if above(wi, wo) { self.0 / PI } else { 0.0 };
+        [f, 0.5 * f, 0.25 * f]
+    }
+    fn pdf(&self, wi: V, wo: V) -> f64 {
+        if above(wi, wo) { wi.z / PI } else { 0.0 }
+    }
+    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
+        let (sin, cos) = (TAU * u[1]).sin_cos();
+        let r = u[0].sqrt();
+        consistent(self, V::new(r * cos, r * sin, (1.0 - u[0]).sqrt()), wo)
+    }
+}
+
+/// (p + 2)/(2π) cosᵖ of the angle between wi and the mirrored wo: reciprocal, with albedo 1 at normal incidence and less
+/// elsewhere. The lobe is drawn whole; what falls below the horizon is lost.
+pub struct Phong(pub f64);
+
+impl Phong {
+    fn cos(wi: V, wo: V) -> f64 {
+        wi.dot(V::new(-wo.x, -wo.y, wo.z)).clamp(0.0, 1.0)
+    }
+}
+
+impl Reflection for Phong {
+    fn eval(&self, wi: V, wo: V) -> [f64; 3] {
+        if !above(wi, wo) {
+            return [0.0; 3];
+        }
+        [(self.0 + 2.0) / TAU * Self::cos(wi, wo).powf(self.0); 3]
+    }
+    fn pdf(&self, wi: V, wo: V) -> f64 {
+        if !above(wi, wo) {
+            return 0.0;
+        }
+        (self.0 + 1.0) / TAU * Self::cos(wi, wo).powf(self.0)
+    }
+    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
+        let cos = (1.0 - u[0]).powf(1.0 / (self.0 + 1.0));
+        let sin = (1.0 - cos * cos).max(0.0).sqrt();
+        let (s, c) = (TAU * u[1]).sin_cos();
+        let frame = Frame::from_normal(V::new(-wo.x, -wo.y, wo.z));
+        consistent(self, frame.to_world(V::new(sin * c, sin * s, cos)), wo)
+    }
+}
+
+/// A white GGX conductor with height-correlated masking, possibly brushed, drawn by its visible normals.
+pub struct Ggx {
+    pub alpha: [f64; 2],
+}
+
+impl Ggx {
+    fn lambda(&self, w: V) -> f64 {
+        let a2 = (self.alpha[0] * w.x).powi(2) + (self.alpha[1] * w.y).powi(2);
+        0.5 * ((1.0 + a2 / (w.z * w.z)).sqrt() - 1.0)
+    }
+    fn d(&self, h: V) -> f64 {
+        let [ax, ay] = self.alpha;
+        let e = (h.x / ax).powi(2) + (h.y / ay).powi(2) + h.z * h.z;
+        1.0 / (PI * ax * ay * e * e)
+    }
+}
+
+impl Reflection for Ggx {
+    fn eval(&self, wi: V, wo: V) -> [f64; 3] {
+        if !above(wi, wo) {
+            return [0.0; 3];
+        }
+        let h = (wi + wo).normalize();
+        let g = 1.0 / (1.0 + self.lambda(wi) + self.lambda(wo));
+        [self.d(h) * g / (4.0 * wi.z * wo.z); 3]
+    }
+    fn pdf(&self, wi: V, wo: V) -> f64 {
+        if !above(wi, wo) {
+            return 0.0;
+        }
+        // D_v(h) / (4 wo·h) with D_v = D·max(wo·h, 0) / (cosθo (1 + Λ(wo))).
+        let h = (wi + wo).normalize();
+        self.d(h) / (4.0 * wo.z * (1.0 + self.lambda(wo)))
+    }
+    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
+        if wo.z <= 0.0 {
+            return None;
+        }
+        // Dupuy & Benyoub 2023: a uniform point of the spherical cap opposite to the stretched view.
+        let [ax, ay] = self.alpha;
+        let v = V::new(ax * wo.x, ay * wo.y, wo.z).normalize();
+        let z = 1.0 - u[1] * (1.0 + v.z);
+        let sin = (1.0 - z * z).max(0.0).sqrt();
+        let (s, c) = (TAU * u[0]).sin_cos();
+        let n = V::new(sin * c, sin * s, z) + v;
+        let h = V::new(ax * n.x, ay * n.y, n.z).normalize();
+        let wi = wo.reflect(h);
+        if wi.z <= 0.0 || !wi.is_finite() {
+            return None;
+        }
+        consistent(self, wi, wo)
+    }
+}
+
+/// A perfect mirror, reflecting the fraction given.
+pub struct Mirror(pub f64);
+
+impl Reflection for Mirror {
+    fn eval(&self, _: V, _: V) -> [f64; 3] {
+        [0.0; 3]
+    }
+    fn pdf(&self, _: V, _: V) -> f64 {
+        0.0
+    }
+    fn sample(&self, wo: V, _: [f64; 3]) -> Option<SubjectSample> {
+        (wo.z > 0.0).then(|| SubjectSample {
+            wi: V::new(-wo.x, -wo.y, wo.z),
+            weight: [self.0; 3],
+            pdf: 1.0,
+            delta: true,
+        })
+    }
+}
+
+/// Half a mirror and half something else, chosen by the third number.
+pub struct Varnished<R>(pub R);
+
+impl<R: Reflection> Reflection for Varnished<R> {
+    fn eval(&self, wi: V, wo: V) -> [f64; 3] {
+        self.0.eval(wi, wo).map(|f| 0.5 * f)
+    }
+    fn pdf(&self, wi: V, wo: V) -> f64 {
+        0.5 * self.0.pdf(wi, wo)
+    }
+    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
+        if u[2] < 0.5 {
+            let s = Mirror(0.5).sample(wo, u)?;
+            return Some(SubjectSample {
+                weight: [1.0; 3],
+                pdf: 0.5,
+                ..s
+            });
+        }
+        let s = self.0.sample(wo, u)?;
+        Some(SubjectSample {
+            pdf: 0.5 * s.pdf,
+            ..s
+        })
+    }
+}
+
+type EvalOf<'a, R> = &'a (dyn Fn(&R, V, V) -> [f64; 3] + Sync);
+type PdfOf<'a, R> = &'a (dyn Fn(&R, V, V) -> f64 + Sync);
+type SampleOf<'a, R> = &'a (dyn Fn(&R, V, [f64; 3]) -> Option<SubjectSample> + Sync);
+
+/// `inner` with some operations replaced.
+pub struct Broken<'a, R> {
+    pub inner: R,
+    pub eval: Option<EvalOf<'a, R>>,
+    pub pdf: Option<PdfOf<'a, R>>,
+    pub sample: Option<SampleOf<'a, R>>,
+}
+
+impl<'a, R: Reflection> Broken<'a, R> {
+    pub fn new(inner: R) -> Self {
+        Self {
+            inner,
+            eval: None,
+            pdf: None,
+            sample: None,
+        }
+    }
+    pub fn eval(mut self, f: EvalOf<'a, R>) -> Self {
+        self.eval = Some(f);
+        self
+    }
+    pub fn pdf(mut self, f: PdfOf<'a, R>) -> Self {
+        self.pdf = Some(f);
+        self
+    }
+    pub fn sample(mut self, f: SampleOf<'a, R>) -> Self {
+        self.sample = Some(f);
+        self
+    }
+}
+
+impl<R: Reflection> Reflection for Broken<'_, R> {
+    fn eval(&self, wi: V, wo: V) -> [f64; 3] {
+        match self.eval {
+            Some(f) => f(&self.inner, wi, wo),
+            None => self.inner.eval(wi, wo),
+        }
+    }
+    fn pdf(&self, wi: V, wo: V) -> f64 {
+        match self.pdf {
+            Some(f) => f(&self.inner, wi, wo),
+            None => self.inner.pdf(wi, wo),
+        }
+    }
+    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
+        match self.sample {
+            Some(f) => f(&self.inner, wo, u),
+            None => self.inner.sample(wo, u),
+        }
+    }
+}
