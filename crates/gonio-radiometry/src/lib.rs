@@ -1,1 +1,21 @@
-//! Radiometry: quantities and units, spectra and colour, directions, solid angles, quadrature, sampling
+//! Radiometry: the measure of light, and the geometry and sampling under it.
+//!
+//! - [`direction`]: spherical coordinates, both ways
+//! - [`solid_angle`]: solid angles and projected solid angles in closed form, and the Jacobians between measures
+//! - [`quadrature`]: integrals over the sphere, the hemisphere and rectangles
+//! - [`sequence`]: sample sequences indexed by (seed, pixel, sample, dimension)
+//! - [`warp`]: maps from the unit square to directions, points and tables, with their densities and inverses
+//!
+//! This crate is floor 1: it knows numbers and vectors of `gonio_num`, and nothing of surfaces, scenes or images.
+
+pub mod direction;
+mod error;
+pub mod quadrature;
+pub mod sequence;
+pub mod solid_angle;
+pub mod warp;
+
+#[cfg(test)]
+mod testing;
+
+pub use error::RadiometryError;
