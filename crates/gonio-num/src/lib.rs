@@ -11,7 +11,10 @@
 //! This crate is floor 0. It knows numbers, vectors, frames and transforms; it knows nothing of light.
 
 mod affine;
+pub mod dispatch;
 mod frame;
+pub mod lanes;
+pub mod math;
 mod real;
 mod vec3;
 

@@ -1,5 +1,6 @@
 //! [`Real`], the number type that formulas are generic over, and its scalar implementations.
 
+use crate::math;
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -210,33 +211,40 @@ pub trait Real:
     }
 }
 
-/// Index and weight of the lower of the two samples around `x` in [0, 1] of a table of `n`.
-#[inline(always)]
-pub(crate) fn bracket(n: usize, x: f32) -> (usize, f32) {
-    let f = x.clamp(0.0, 1.0) * (n - 1) as f32;
-    // A NaN becomes index 0 with weight NaN, so it stays visible.
-    let i = (f as usize).min(n - 2);
-    (i, f - i as f32)
-}
+/// Index and weight of the lower of the two samples around x in [0, 1] of a table of n, and the look-ups with them.
+macro_rules! lookups {
+    ($t:ty, $bracket:ident, $lookup1:ident, $lookup2:ident) => {
+        #[inline(always)]
+        fn $bracket(n: usize, x: $t) -> (usize, $t) {
+            let f = x.clamp(0.0, 1.0) * (n - 1) as $t;
+            // A NaN becomes index 0 with weight NaN, so it stays visible.
+            let i = (f as usize).min(n - 2);
+            (i, f - i as $t)
+        }
 
-#[inline(always)]
-pub(crate) fn lookup1(t: &Table1, x: f32) -> f32 {
-    let (i, w) = bracket(t.data.len(), x);
-    t.data[i] * (1.0 - w) + t.data[i + 1] * w
-}
+        #[inline(always)]
+        pub(crate) fn $lookup1(t: &Table1, x: $t) -> $t {
+            let (i, w) = $bracket(t.data.len(), x);
+            <$t>::from(t.data[i]) * (1.0 - w) + <$t>::from(t.data[i + 1]) * w
+        }
 
-#[inline(always)]
-pub(crate) fn lookup2(t: &Table2, x: f32, y: f32) -> f32 {
-    let (i, u) = bracket(t.width, x);
-    let (j, v) = bracket(t.height, y);
-    let at = |i: usize, j: usize| t.data[j * t.width + i];
-    let low = at(i, j) * (1.0 - u) + at(i + 1, j) * u;
-    let high = at(i, j + 1) * (1.0 - u) + at(i + 1, j + 1) * u;
-    low * (1.0 - v) + high * v
+        #[inline(always)]
+        pub(crate) fn $lookup2(t: &Table2, x: $t, y: $t) -> $t {
+            let (i, u) = $bracket(t.width, x);
+            let (j, v) = $bracket(t.height, y);
+            let row = j * t.width + i;
+            let (low, high) = (&t.data[row..], &t.data[row + t.width..]);
+            let low = <$t>::from(low[0]) * (1.0 - u) + <$t>::from(low[1]) * u;
+            let high = <$t>::from(high[0]) * (1.0 - u) + <$t>::from(high[1]) * u;
+            low * (1.0 - v) + high * v
+        }
+    };
 }
+lookups!(f32, bracket_f32, lookup1, lookup2);
+lookups!(f64, bracket_f64, lookup1_f64, lookup2_f64);
 
 macro_rules! scalar_real {
-    ($t:ty, $exp:path, $ln:path, $sin:path, $cos:path, $acos:path, $atan2:path) => {
+    ($t:ty, $floor:path, $exp:path, $ln:path, $sin:path, $cos:path, $acos:path, $atan2:path, $lookup1:path, $lookup2:path) => {
         impl Real for $t {
             type Mask = bool;
             #[inline(always)]
@@ -261,7 +269,7 @@ macro_rules! scalar_real {
             }
             #[inline(always)]
             fn floor(self) -> Self {
-                <$t>::floor(self)
+                $floor(self)
             }
             #[inline(always)]
             fn exp(self) -> Self {
@@ -281,7 +289,7 @@ macro_rules! scalar_real {
             }
             #[inline(always)]
             fn acos(self) -> Self {
-                $acos(Real::clamp(self, -1.0, 1.0))
+                $acos(self)
             }
             #[inline(always)]
             fn atan2(self, x: Self) -> Self {
@@ -305,11 +313,11 @@ macro_rules! scalar_real {
             }
             #[inline(always)]
             fn table1(table: &'static Table1, x: Self) -> Self {
-                lookup1(table, x as f32) as $t
+                $lookup1(table, x)
             }
             #[inline(always)]
             fn table2(table: &'static Table2, x: Self, y: Self) -> Self {
-                lookup2(table, x as f32, y as f32) as $t
+                $lookup2(table, x, y)
             }
             #[inline(always)]
             fn repeat<const K: usize>(
@@ -332,19 +340,42 @@ macro_rules! scalar_real {
 
 scalar_real!(
     f32,
-    libm::expf,
-    libm::logf,
-    libm::sinf,
-    libm::cosf,
-    libm::acosf,
-    libm::atan2f
+    math::floor,
+    math::exp,
+    math::ln,
+    math::sin,
+    math::cos,
+    math::acos,
+    math::atan2,
+    lookup1,
+    lookup2
 );
 scalar_real!(
     f64,
+    f64::floor,
     libm::exp,
     libm::log,
     libm::sin,
     libm::cos,
-    libm::acos,
-    libm::atan2
+    acos_f64,
+    atan2_f64,
+    lookup1_f64,
+    lookup2_f64
 );
+
+/// As [`math::acos`]: clamped, NaN stays NaN.
+#[inline(always)]
+fn acos_f64(x: f64) -> f64 {
+    libm::acos(x.clamp(-1.0, 1.0))
+}
+
+/// As [`math::atan2`]: 0 at the origin, whatever the signs of the zeros.
+#[inline(always)]
+fn atan2_f64(y: f64, x: f64) -> f64 {
+    let angle = libm::atan2(y, x);
+    if x == 0.0 && y == 0.0 {
+        0.0f64.copysign(y)
+    } else {
+        angle
+    }
+}
