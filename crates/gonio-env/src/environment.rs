@@ -1,0 +1,332 @@
+//! [`Environment`], one radiance per direction.
+
+use crate::lookup::Map;
+use crate::sphere_table::{SphereTable, UNIFORM_DENSITY, uniform_direction};
+use crate::{EnvError, Layout, luminance};
+use gonio_image::Image;
+use gonio_num::{Real, Vec3};
+use std::sync::Arc;
+
+/// A sampled direction towards the environment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EnvSample {
+    /// Towards the light; world, unit.
+    pub wi: Vec3<f32>,
+    /// Radiance from there [W m⁻² sr⁻¹], as [`Environment::radiance`] gives it.
+    pub radiance: [f32; 3],
+    /// Density of having chosen `wi` [sr⁻¹], as [`Environment::pdf`] gives it, to the bit. 0 only where it underflows
+    /// (below 1e-38 of the picture's peak): such a sample carries nothing and must be skipped.
+    pub pdf: f32,
+}
+
+/// Light from infinitely far away: one radiance per direction.
+///
+/// A clone is cheap: pictures are shared. See the [crate's page](crate) for how it interpolates and samples.
+#[derive(Debug, Clone)]
+pub struct Environment {
+    pub(crate) source: Source,
+    /// Counter-clockwise seen from above, in (−180, 180].
+    pub(crate) yaw_deg: f64,
+    sin_yaw: f32,
+    cos_yaw: f32,
+    pub(crate) scale: [f32; 3],
+}
+
+#[derive(Debug, Clone)]
+pub(crate) enum Source {
+    Uniform([f32; 3]),
+    Picture(Arc<Picture>),
+}
+
+#[derive(Debug)]
+pub(crate) struct Picture {
+    pub map: Map,
+    /// `None` if the picture is black.
+    table: Option<SphereTable>,
+}
+
+/// Share of the uniform density in the sampling of a disc-shaped picture, whose table is resampled and could miss light.
+const DISC_FLOOR: f32 = 0.01;
+
+impl Environment {
+    /// The same radiance [W m⁻² sr⁻¹] from every direction.
+    ///
+    /// # Panics
+    /// If a channel is NaN, infinite or negative; [`Environment::try_uniform`] returns an error instead.
+    pub fn uniform(radiance: [f32; 3]) -> Self {
+        Self::try_uniform(radiance).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    /// The same radiance [W m⁻² sr⁻¹] from every direction.
+    ///
+    /// # Errors
+    /// [`EnvError::Parameter`] if a channel is NaN, infinite or negative.
+    pub fn try_uniform(radiance: [f32; 3]) -> Result<Self, EnvError> {
+        check_colour("radiance", radiance)?;
+        Ok(Self::of(Source::Uniform(radiance)))
+    }
+
+    /// The environment that `image` shows, its pixels being radiance [W m⁻² sr⁻¹].
+    ///
+    /// Any size will do for `LatLong`, down to 1 × 1; the disc layouts take square pictures. What stands outside a disc
+    /// is ignored.
+    ///
+    /// # Errors
+    /// [`EnvError::Shape`], and [`EnvError::Texel`] for a texel that is NaN, infinite or negative.
+    pub fn from_image(image: Image, layout: Layout) -> Result<Self, EnvError> {
+        Ok(Self::from_map(Map::new(image, layout, None, false)?))
+    }
+
+    /// As [`Environment::from_image`], but replaces unsound texels instead of refusing them: NaN, −∞ and negative
+    /// values become 0, +∞ the largest finite value of the picture. [`EnvInfo`](crate::EnvInfo) counts them.
+    ///
+    /// # Errors
+    /// [`EnvError::Shape`].
+    pub fn from_image_sanitized(image: Image, layout: Layout) -> Result<Self, EnvError> {
+        Ok(Self::from_map(Map::new(image, layout, None, true)?))
+    }
+
+    pub(crate) fn from_map(map: Map) -> Self {
+        let table = if map.layout.is_disc() {
+            disc_table(&map)
+        } else {
+            lat_long_table(&map)
+        };
+        Self::of(Source::Picture(Arc::new(Picture { map, table })))
+    }
+
+    fn of(source: Source) -> Self {
+        Self {
+            source,
+            yaw_deg: 0.0,
+            sin_yaw: 0.0,
+            cos_yaw: 1.0,
+            scale: [1.0; 3],
+        }
+    }
+
+    /// Turned by `yaw_deg` degrees about +y, counter-clockwise seen from above (right-handed), after any turn before.
+    /// What stood in front (−z) stands on the left (−x) after 90°.
+    ///
+    /// # Panics
+    /// If `yaw_deg` is NaN or infinite; [`Environment::try_rotated_deg`] returns an error instead.
+    pub fn rotated_deg(self, yaw_deg: f32) -> Self {
+        self.try_rotated_deg(yaw_deg)
+            .unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    /// As [`Environment::rotated_deg`].
+    ///
+    /// # Errors
+    /// [`EnvError::Parameter`] if `yaw_deg` is NaN or infinite.
+    pub fn try_rotated_deg(mut self, yaw_deg: f32) -> Result<Self, EnvError> {
+        if !yaw_deg.is_finite() {
+            return Err(EnvError::Parameter {
+                name: "rotation",
+                found: yaw_deg.to_string(),
+                expected: "a finite number of degrees",
+            });
+        }
+        let turn = (self.yaw_deg + f64::from(yaw_deg)).rem_euclid(360.0);
+        self.yaw_deg = if turn > 180.0 { turn - 360.0 } else { turn };
+        let (sin, cos) = yaw_sin_cos(self.yaw_deg);
+        (self.sin_yaw, self.cos_yaw) = (sin as f32, cos as f32);
+        Ok(self)
+    }
+
+    /// With its radiance multiplied, channel by channel, after any factor before. Sampling follows the unscaled luminance.
+    ///
+    /// # Panics
+    /// If a factor is NaN, infinite or negative; [`Environment::try_scaled`] returns an error instead.
+    pub fn scaled(self, factor: [f32; 3]) -> Self {
+        self.try_scaled(factor).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    /// As [`Environment::scaled`].
+    ///
+    /// # Errors
+    /// [`EnvError::Parameter`] if a factor is NaN, infinite or negative.
+    pub fn try_scaled(mut self, factor: [f32; 3]) -> Result<Self, EnvError> {
+        check_colour("scale", factor)?;
+        for (s, f) in self.scale.iter_mut().zip(factor) {
+            *s *= f;
+        }
+        Ok(self)
+    }
+
+    /// World to the picture's own frame.
+    #[inline(always)]
+    fn to_local(&self, d: Vec3<f32>) -> Vec3<f32> {
+        let (s, c) = (self.sin_yaw, self.cos_yaw);
+        Vec3::new(c * d.x - s * d.z, d.y, s * d.x + c * d.z)
+    }
+
+    #[inline(always)]
+    fn to_world(&self, d: Vec3<f32>) -> Vec3<f32> {
+        let (s, c) = (self.sin_yaw, self.cos_yaw);
+        Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x)
+    }
+
+    pub(crate) fn to_world_f64(&self, d: Vec3<f64>) -> Vec3<f64> {
+        let (s, c) = yaw_sin_cos(self.yaw_deg);
+        Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x)
+    }
+
+    /// Radiance [W m⁻² sr⁻¹] from the unit direction `d` (world). Finite and ≥ 0 for every finite `d`.
+    #[inline]
+    pub fn radiance(&self, d: Vec3<f32>) -> [f32; 3] {
+        self.times_scale(match &self.source {
+            Source::Uniform(radiance) => *radiance,
+            Source::Picture(picture) => picture.map.radiance(self.to_local(d)),
+        })
+    }
+
+    /// Density [sr⁻¹] with which [`Environment::sample`] chooses the unit direction `d` (world). It integrates to 1 over
+    /// the sphere. A black environment samples the sphere uniformly.
+    #[inline]
+    pub fn pdf(&self, d: Vec3<f32>) -> f32 {
+        match &self.source {
+            Source::Uniform(_) => UNIFORM_DENSITY,
+            Source::Picture(picture) => {
+                let d = self.to_local(d);
+                picture.density(d, || Layout::LatLong.uv(d))
+            }
+        }
+    }
+
+    /// [`Environment::radiance`] and [`Environment::pdf`] at once, for less than both cost.
+    #[inline]
+    pub fn radiance_and_pdf(&self, d: Vec3<f32>) -> ([f32; 3], f32) {
+        match &self.source {
+            Source::Uniform(radiance) => (self.times_scale(*radiance), UNIFORM_DENSITY),
+            Source::Picture(picture) => {
+                let d = self.to_local(d);
+                let map = &picture.map;
+                let uv = map.layout.uv(d);
+                let radiance = map.radiance_in(map.cell(uv));
+                let same = map.layout == Layout::LatLong;
+                let pdf = picture.density(d, || if same { uv } else { Layout::LatLong.uv(d) });
+                (self.times_scale(radiance), pdf)
+            }
+        }
+    }
+
+    /// A direction chosen by luminance, from `u` in [0, 1)².
+    ///
+    /// The direction is a monotone function of each u, but for the turn: stratified u stay stratified. A uniform or black
+    /// environment samples the sphere uniformly. Never NaN.
+    #[inline]
+    pub fn sample(&self, u: [f32; 2]) -> EnvSample {
+        let local = match &self.source {
+            Source::Picture(picture) => match &picture.table {
+                Some(table) => table.sample(u),
+                None => uniform_direction(u),
+            },
+            Source::Uniform(_) => uniform_direction(u),
+        };
+        let wi = self.to_world(local);
+        // Of the final direction, so that `pdf` gives the same bits for it.
+        let (radiance, pdf) = self.radiance_and_pdf(wi);
+        EnvSample { wi, radiance, pdf }
+    }
+
+    /// Whether no light comes from anywhere.
+    pub fn is_black(&self) -> bool {
+        let dark = |c: usize| match &self.source {
+            Source::Uniform(radiance) => radiance[c] <= 0.0,
+            Source::Picture(p) => p.table.is_none() || p.map.texels.iter().all(|t| t[c] <= 0.0),
+        };
+        (0..3).all(|c| self.scale[c] <= 0.0 || dark(c))
+    }
+
+    #[inline(always)]
+    fn times_scale(&self, rgb: [f32; 3]) -> [f32; 3] {
+        [
+            rgb[0] * self.scale[0],
+            rgb[1] * self.scale[1],
+            rgb[2] * self.scale[2],
+        ]
+    }
+}
+
+impl Picture {
+    #[inline(always)]
+    fn density(&self, d: Vec3<f32>, uv: impl FnOnce() -> [f32; 2]) -> f32 {
+        match &self.table {
+            Some(table) => table.density(d, uv()),
+            None => UNIFORM_DENSITY,
+        }
+    }
+}
+
+/// sin and cos of an angle in degrees, exact at multiples of 90°.
+pub(crate) fn yaw_sin_cos(deg: f64) -> (f64, f64) {
+    match deg {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        -90.0 => (-1.0, 0.0),
+        _ => Real::sin_cos(deg.to_radians()),
+    }
+}
+
+fn check_colour(name: &'static str, rgb: [f32; 3]) -> Result<(), EnvError> {
+    if rgb.into_iter().all(|c| c.is_finite() && c >= 0.0) {
+        return Ok(());
+    }
+    Err(EnvError::Parameter {
+        name,
+        found: format!("{}/{}/{}", rgb[0], rgb[1], rgb[2]),
+        expected: "finite numbers ≥ 0",
+    })
+}
+
+/// Nodes at the picture's own texels.
+fn lat_long_table(map: &Map) -> Option<SphereTable> {
+    let values = map.texels.iter().map(|t| luminance(*t) as f32).collect();
+    SphereTable::new(map.width, map.height, values)
+}
+
+/// Nodes on a grid about as fine as the disc, each the largest luminance on the 3 × 3 half-steps around it, above a
+/// floor, so that the density is positive wherever light could come from.
+fn disc_table(map: &Map) -> Option<SphereTable> {
+    let (peak, _, _) = map.peak();
+    if peak <= 0.0 {
+        return None;
+    }
+    let height = (map.width * 5 / 8).max(8);
+    let width = 2 * height;
+    // Half-steps: in u from node 0, in v from half a step above it.
+    let (fine_w, fine_h) = (2 * width, 2 * height + 1);
+    let fine: Vec<f32> = (0..fine_w * fine_h)
+        .map(|k| {
+            let u = (0.5 + 0.5 * (k % fine_w) as f64) / width as f64;
+            let v = 0.5 * (k / fine_w) as f64 / height as f64;
+            let d = Layout::LatLong.direction([u, v]).to_f32();
+            (luminance(map.radiance(d)) / peak) as f32
+        })
+        .collect();
+    let mut values = Vec::with_capacity(width * height);
+    for j in 0..height {
+        for i in 0..width {
+            let mut largest = 0.0_f32;
+            for row in fine[2 * j * fine_w..].chunks_exact(fine_w).take(3) {
+                for di in 0..3 {
+                    largest = largest.max(row[(2 * i + fine_w - 1 + di) % fine_w]);
+                }
+            }
+            values.push(largest);
+        }
+    }
+    let mean = values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len() as f64;
+    // The grid may have missed the only texel that is lit: then it is uniform.
+    let floor = if mean > 0.0 {
+        mean as f32 * DISC_FLOOR
+    } else {
+        1.0
+    };
+    for v in &mut values {
+        *v += floor;
+    }
+    SphereTable::new(width, height, values)
+}
