@@ -20,11 +20,21 @@ pub(crate) fn coordinates(w: Vec3<f64>) -> [f64; 2] {
     [z, azimuth(w)]
 }
 
+/// A direction drawn to see where the mass lies: its coordinates and the density of whatever is to be integrated.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pilot {
+    pub at: [f64; 2],
+    pub density: f64,
+}
+
 /// When a cell is small enough.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rules {
     /// A cell with more pilot samples is split at their median.
     pub max_points: usize,
+    /// A cell is halved while its solid angle times the largest density of its pilot samples is above this: what it would
+    /// hold if it were as dense everywhere. So a cell never hides a summit in its corner, between the nodes of a quadrature.
+    pub max_mass: f64,
     /// A larger cell is halved, in sr.
     pub max_solid_angle: f64,
     /// A cell around a seed direction is halved until it is narrower, in radians.
@@ -51,7 +61,7 @@ pub(crate) struct Partition {
 impl Partition {
     /// Cuts the upper hemisphere, or the sphere, with a cut along the horizon.
     pub(crate) fn new(
-        mut points: Vec<[f64; 2]>,
+        mut points: Vec<Pilot>,
         seeds: &[Vec3<f64>],
         rules: &Rules,
         whole_sphere: bool,
@@ -68,8 +78,8 @@ impl Partition {
         };
         if whole_sphere {
             p.nodes.push(Node::Leaf(0));
-            points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            let above = points.partition_point(|x| x[0] < 0.0);
+            points.sort_by(|a, b| a.at[0].total_cmp(&b.at[0]));
+            let above = points.partition_point(|p| p.at[0] < 0.0);
             let lower = Rect {
                 low: [-1.0, 0.0],
                 high: [0.0, TAU],
@@ -85,7 +95,7 @@ impl Partition {
                 children,
             };
         } else {
-            points.retain(|x| x[0] >= 0.0);
+            points.retain(|p| p.at[0] >= 0.0);
             p.build(upper, &mut points, &seeds, rules);
         }
         p
@@ -94,7 +104,7 @@ impl Partition {
     fn build(
         &mut self,
         rect: Rect,
-        points: &mut [[f64; 2]],
+        points: &mut [Pilot],
         seeds: &[[f64; 2]],
         rules: &Rules,
     ) -> usize {
@@ -103,12 +113,27 @@ impl Partition {
         let widths = widths(&rect);
         let longer = usize::from(widths[1] > widths[0]);
         let holds = |s: &[f64; 2]| (0..2).all(|k| s[k] >= rect.low[k] && s[k] <= rect.high[k]);
-        let cut = if points.len() > rules.max_points {
-            median(points, &rect, longer).or_else(|| median(points, &rect, 1 - longer))
+        let highest = points.iter().map(|p| p.density).fold(0.0, f64::max);
+        let crowded = points.len() > rules.max_points;
+        let dense = rect.area() * highest > rules.max_mass;
+        let cut = if crowded || dense {
+            let uneven = [0, 1].map(|axis| unevenness(points, &rect, axis));
+            // Even along both, as far as so few points tell (Kolmogorov's 5 % point): keep the cells round.
+            let even = 1.36 / (points.len() as f64).sqrt();
+            let first = if uneven[0].max(uneven[1]) < even {
+                longer
+            } else {
+                usize::from(uneven[1] > uneven[0])
+            };
+            if crowded {
+                median(points, &rect, first).or_else(|| median(points, &rect, 1 - first))
+            } else {
+                halving(&rect, first)
+            }
         } else if rect.area() > rules.max_solid_angle
             || (widths[longer] > rules.seed_width && seeds.iter().any(holds))
         {
-            Some((longer, rect.centre()[longer]))
+            halving(&rect, longer)
         } else {
             None
         };
@@ -119,7 +144,7 @@ impl Partition {
         let halves = rect.split(axis, at);
         let mut below = 0;
         for i in 0..points.len() {
-            if points[i][axis] < at {
+            if points[i].at[axis] < at {
                 points.swap(i, below);
                 below += 1;
             }
@@ -166,11 +191,34 @@ fn widths(r: &Rect) -> [f64; 2] {
     ]
 }
 
+/// How far the points are from even along `axis` of the cell: Kolmogorov's distance from the uniform distribution.
+///
+/// A lobe near grazing is hundreds of times longer in θ than in φ. Cuts along the axis where it varies resolve it, where
+/// round cells would each hold its whole width.
+fn unevenness(points: &mut [Pilot], rect: &Rect, axis: usize) -> f64 {
+    points.sort_unstable_by(|a, b| a.at[axis].total_cmp(&b.at[axis]));
+    let (low, n) = (rect.low[axis], points.len() as f64);
+    let width = rect.high[axis] - low;
+    let mut distance: f64 = 0.0;
+    for (i, p) in points.iter().enumerate() {
+        let x = (p.at[axis] - low) / width;
+        distance = distance.max(x - i as f64 / n).max((i + 1) as f64 / n - x);
+    }
+    distance
+}
+
+/// The cut through the middle; none where `f64` has hardly a number between.
+fn halving(rect: &Rect, axis: usize) -> Option<(usize, f64)> {
+    let width = rect.high[axis] - rect.low[axis];
+    (width > 1e-14).then(|| (axis, rect.centre()[axis]))
+}
+
 /// A cut along `axis` that halves the points; none where they coincide.
-fn median(points: &mut [[f64; 2]], rect: &Rect, axis: usize) -> Option<(usize, f64)> {
+fn median(points: &mut [Pilot], rect: &Rect, axis: usize) -> Option<(usize, f64)> {
     let middle = points.len() / 2;
-    let (_, at, _) = points.select_nth_unstable_by(middle, |a, b| a[axis].total_cmp(&b[axis]));
-    let at = at[axis];
+    let (_, at, _) =
+        points.select_nth_unstable_by(middle, |a, b| a.at[axis].total_cmp(&b.at[axis]));
+    let at = at.at[axis];
     // A sliver would hold nothing but rounding.
     let margin = 1e-6 * (rect.high[axis] - rect.low[axis]);
     (at > rect.low[axis] + margin && at < rect.high[axis] - margin).then_some((axis, at))
@@ -184,16 +232,42 @@ mod tests {
 
     const RULES: Rules = Rules {
         max_points: 16,
+        max_mass: f64::INFINITY,
         max_solid_angle: 0.2,
         seed_width: 0.01,
     };
+
+    fn pilot(at: [f64; 2]) -> Pilot {
+        Pilot { at, density: 1.0 }
+    }
+
+    #[test]
+    fn a_dense_point_shrinks_its_cell() {
+        let rules = Rules {
+            max_mass: 0.01,
+            ..RULES
+        };
+        let summit = Pilot {
+            at: [0.5, 1.0],
+            density: 1e6,
+        };
+        let p = Partition::new(vec![summit], &[], &rules, false);
+        let cell = p.cells[p.find(crate::directions::at_height(0.5, 1.0)).unwrap()];
+        assert!(cell.area() <= 1e-8 && cell.area() > 1e-9);
+    }
 
     #[test]
     fn cells_cover_the_sphere_once() {
         let mut rng = Rng::from_name("cells_cover_the_sphere_once");
         let lobe = spherical(1.0, 0.05);
         let points = (0..4000)
-            .map(|_| coordinates(moved(lobe, 0.01 * rng.next_f64(), TAU * rng.next_f64())))
+            .map(|_| {
+                pilot(coordinates(moved(
+                    lobe,
+                    0.01 * rng.next_f64(),
+                    TAU * rng.next_f64(),
+                )))
+            })
             .collect();
         let p = Partition::new(points, &[spherical(0.3, 2.0)], &RULES, true);
         let area: f64 = p.cells.iter().map(Rect::area).sum();
@@ -214,7 +288,7 @@ mod tests {
 
     #[test]
     fn coincident_points_end_the_splitting() {
-        let p = Partition::new(vec![[0.5, 1.0]; 1000], &[], &RULES, true);
+        let p = Partition::new(vec![pilot([0.5, 1.0]); 1000], &[], &RULES, true);
         assert!(p.cells.len() < 1000);
     }
 

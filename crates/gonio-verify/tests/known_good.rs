@@ -61,3 +61,177 @@ fn right_functions_pass_whole() {
         }
     }
 }
+
+#[test]
+fn a_mirror_has_no_density_to_check() {
+    let report = with_subject("mirror", &Mirror(1.0), |s| {
+        check(s, &Expectation::PHYSICAL, Effort::Quick, "mirror")
+    });
+    assert!(report.passed(), "{report}");
+    for p in [Property::PdfIntegral, Property::SampleDensity] {
+        assert_eq!(outcome(&report, p), Outcome::NotApplicable);
+    }
+    let energy = report.verdict(Property::EnergyConservation).unwrap();
+    assert_eq!(energy.figure, 1.0);
+    // The control: a mirror that makes energy.
+    let report = with_subject("bright mirror", &Mirror(1.01), |s| {
+        check(s, &Expectation::PHYSICAL, Effort::Quick, "mirror")
+    });
+    assert_eq!(
+        outcome(&report, Property::EnergyConservation),
+        Outcome::Fail
+    );
+}
+
+#[test]
+fn without_pdf_and_sample_the_rest_is_still_checked() {
+    let ggx = Ggx { alpha: [0.05; 2] };
+    let eval = |wi: V, wo: V| ggx.eval(wi, wo);
+    let subject = gonio_verify::Subject::new("eval only", &eval);
+    let report = check(&subject, &Expectation::PHYSICAL, Effort::Quick, "eval only");
+    assert!(report.passed(), "{report}");
+    // The quadrature finds the lobe without a sampler: the albedo at normal incidence of α = 0.05 is above 0.99.
+    let energy = report.verdict(Property::EnergyConservation).unwrap();
+    assert!((0.99..=1.0).contains(&energy.figure), "{report}");
+    for p in [
+        Property::PdfIntegral,
+        Property::SampleDensity,
+        Property::SampleWeight,
+    ] {
+        assert_eq!(outcome(&report, p), Outcome::NotApplicable);
+    }
+}
+
+#[test]
+fn single_precision_inside_passes_with_its_bounds() {
+    let ggx = Ggx { alpha: [0.1; 2] };
+    let round = |w: V| w.to_f32().to_f64();
+    let eval = |wi: V, wo: V| ggx.eval(round(wi), round(wo)).map(|f| f64::from(f as f32));
+    let pdf = |wi: V, wo: V| f64::from(ggx.pdf(round(wi), round(wo)) as f32);
+    let sample = |wo: V, u: [f64; 3]| {
+        let s = ggx.sample(
+            round(wo),
+            u.map(|u| f64::from((u * 16_777_216.0).floor() as f32 / 16_777_216.0)),
+        )?;
+        Some(gonio_verify::SubjectSample {
+            wi: round(s.wi),
+            weight: s.weight.map(|w| f64::from(w as f32)),
+            pdf: f64::from(s.pdf as f32),
+            delta: false,
+        })
+    };
+    let subject = gonio_verify::Subject::new("f32", &eval)
+        .with_pdf(&pdf)
+        .with_sample(&sample);
+    let settings = Settings::new(Effort::Quick).with_precision(Precision::Single);
+    let report = Checker::new(&subject, &Expectation::PHYSICAL, Effort::Quick)
+        .settings(settings)
+        .run("single precision");
+    assert!(report.passed(), "{report}");
+    // The control: the bounds of double precision see the rounding.
+    let report = check(
+        &subject,
+        &Expectation::PHYSICAL,
+        Effort::Quick,
+        "single precision",
+    );
+    assert!(!report.passed(), "{report}");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_report() {
+    let run = |seed: &str| {
+        with_subject("ggx", &Ggx { alpha: [0.3; 2] }, |s| {
+            check(s, &Expectation::PHYSICAL, Effort::Quick, seed)
+        })
+    };
+    let a = run("a");
+    // Witnesses of properties without a violation and figures included.
+    assert_eq!(format!("{a:?}"), format!("{:?}", run("a")));
+    assert_ne!(format!("{a:?}"), format!("{:?}", run("b")));
+}
+
+#[test]
+fn components_add_up() {
+    let (diffuse, lobe) = (Lambertian(0.3), Phong(20.0));
+    let d = |wi: V, wo: V| diffuse.eval(wi, wo);
+    let p = |wi: V, wo: V| lobe.eval(wi, wo).map(|f| 0.5 * f);
+    let sum = |wi: V, wo: V| {
+        let (a, b) = (d(wi, wo), p(wi, wo));
+        [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+    };
+    let subject = gonio_verify::Subject::new("diffuse and specular", &sum);
+    let both: [&gonio_verify::EvalFn; 2] = [&d, &p];
+    let run = |components| {
+        Checker::new(&subject, &Expectation::PHYSICAL, Effort::Quick)
+            .components(components)
+            .run("components")
+    };
+    assert_eq!(outcome(&run(&both), Property::Linearity), Outcome::Pass);
+    assert_eq!(
+        outcome(&run(&both[..1]), Property::Linearity),
+        Outcome::Fail
+    );
+}
+
+/// Many short runs of right functions: none may fail.
+///
+/// The three statistical verdicts and the furnace's each fail by chance with probability 1e-6 at most: 240 runs × 4 × 1e-6,
+/// so one false alarm in a thousand runs of this test would be within the design; none is expected. The p-values of the
+/// χ² test are seen too: they must not be small more often than uniform ones (slack makes them larger).
+#[test]
+fn calibration_no_false_alarms() {
+    let settings = Settings {
+        pairs: 100,
+        directions: 2,
+        density_samples: 4000,
+        cells: 64,
+        quadrature_evaluations: 10_000,
+        ..Settings::new(Effort::Quick)
+    };
+    let subjects: Vec<(&str, Box<dyn Reflection>, Expectation)> = vec![
+        (
+            "lambertian",
+            Box::new(Lambertian(1.0)),
+            Expectation::PHYSICAL,
+        ),
+        ("phong", Box::new(Phong(30.0)), Expectation::PHYSICAL),
+        (
+            "ggx",
+            Box::new(Ggx { alpha: [0.03; 2] }),
+            Expectation::PHYSICAL,
+        ),
+        ("brushed", Box::new(Ggx { alpha: [0.5, 0.1] }), BRUSHED),
+        (
+            "varnished",
+            Box::new(Varnished(Ggx { alpha: [0.3; 2] })),
+            Expectation::PHYSICAL,
+        ),
+        (
+            "lobe at grazing",
+            Box::new(Ggx { alpha: [0.002; 2] }),
+            Expectation::PHYSICAL,
+        ),
+    ];
+    let mut p_values = Vec::new();
+    for (name, r, expect) in &subjects {
+        for run in 0..40 {
+            let report = with_subject(name, r.as_ref(), |s| {
+                Checker::new(s, expect, Effort::Quick)
+                    .settings(settings)
+                    .run(format!("calibration {run}"))
+            });
+            assert!(report.passed(), "run {run}: {report}");
+            let density = report.verdict(Property::SampleDensity).unwrap();
+            p_values.push(density.p_value.unwrap());
+        }
+    }
+    // Of 240 uniform p-values 2.4 are below 0.01; 12 or more have probability 1e-5 (Poisson).
+    let small = p_values.iter().filter(|p| **p < 0.01).count();
+    eprintln!("{} runs, {small} p-values below 0.01", p_values.len());
+    assert!(small < 12, "{small}");
+    // The test isn't blunt either: the median of p-values of exact expectations is 1/2, and slack may not lift it far.
+    p_values.sort_by(f64::total_cmp);
+    eprintln!("median p {}", p_values[120]);
+    assert!(p_values[120] < 0.75, "{}", p_values[120]);
+}

@@ -1,11 +1,11 @@
 //! `sample` against `pdf`: the integral of the density, and the χ² test of the drawn directions.
 
-use super::furnace::outgoing;
+use super::furnace::{SECOND_LOOK, outgoing};
 use super::rng;
 use crate::check::Checker;
 use crate::cubature::integrate;
 use crate::directions::{at_height, mirror};
-use crate::partition::{Partition, Rules, coordinates};
+use crate::partition::{Partition, Pilot, Rules, coordinates};
 use crate::statistics::{
     TestResult, chi_square_test_with_slack, sidak, sidak_p_value, wilson_interval,
 };
@@ -14,8 +14,6 @@ use gonio_num::Vec3;
 
 /// Above this quadrature error a direction can't be judged.
 const BLIND: f64 = 0.02;
-/// How much harder a suspicion is looked at before it becomes a verdict.
-const SECOND_LOOK: u64 = 8;
 
 /// What one direction gave.
 struct Look {
@@ -55,13 +53,17 @@ fn look(c: &Checker, wo: Vec3<f64>, index: usize, tail: f64, harder: u64) -> Opt
     let three = |r: &mut crate::rng::Rng| [r.next_f64(), r.next_f64(), r.next_f64()];
     let cells = u64::from(settings.cells);
     let pilot = cells * 16 * harder;
-    let points: Vec<[f64; 2]> = (0..pilot)
+    let points: Vec<Pilot> = (0..pilot)
         .filter_map(|_| c.subject.draw(wo, three(&mut random)))
         .filter(|s| !s.delta && s.wi.is_finite())
-        .map(|s| coordinates(s.wi))
+        .map(|s| Pilot {
+            at: coordinates(s.wi),
+            density: s.pdf,
+        })
         .collect();
     let rules = Rules {
         max_points: (points.len() / (cells * harder.min(4)) as usize).max(8),
+        max_mass: 4.0 / (cells * harder) as f64,
         max_solid_angle: 0.2 / harder as f64,
         seed_width: 0.05,
     };

@@ -4,10 +4,13 @@ use super::rng;
 use crate::check::Checker;
 use crate::cubature::integrate;
 use crate::directions::{at_height, mirror, spherical};
-use crate::partition::{Partition, Rules, coordinates};
-use crate::statistics::Moments;
+use crate::partition::{Partition, Pilot, Rules, coordinates};
+use crate::statistics::{Moments, bernstein_deviation};
 use crate::verdict::Property;
 use gonio_num::Vec3;
+
+/// How much harder a suspicion is looked at before it becomes a verdict.
+pub(super) const SECOND_LOOK: u64 = 8;
 
 /// What uniform light of radiance 1 becomes towards `wo`: a(ωo) = ∫ f(ωi, ωo) |cosθi| dωi, the directional albedo (by
 /// reciprocity the reflected fraction of a beam from ωo).
@@ -50,11 +53,67 @@ pub(super) fn measure(c: &Checker) -> Vec<Furnace> {
     outgoing(2 * c.settings.directions, 89.5)
         .into_iter()
         .enumerate()
-        .map(|(k, wo)| at(c, wo, k))
+        .map(|(k, wo)| {
+            let first = at(c, wo, k, 1);
+            if !suspicious(c, &first) {
+                return first;
+            }
+            let mut again = at(c, wo, k, SECOND_LOOK);
+            again.evaluations += first.evaluations;
+            again
+        })
         .collect()
 }
 
-fn at(c: &Checker, wo: Vec3<f64>, index: usize) -> Furnace {
+/// Whether a furnace is near to failing anything by what the quadrature says, or its error is large.
+fn suspicious(c: &Checker, f: &Furnace) -> bool {
+    let tail = c.settings.false_positive_rate.max(1e-3);
+    let settings = &c.settings;
+    (0..3).any(|k| {
+        let total = f.quadrature[k] + f.delta[k].mean();
+        total > 1.0 + 0.5 * settings.energy_bound
+            || f.error[k] > 0.005
+            || (c.subject.pdf.is_some()
+                && f.draws > 0
+                && f.bias(k, tail).excess > 0.25 * settings.integral_bound)
+    }) || f.unreachable > 0.5 * settings.integral_bound
+}
+
+/// The difference of a mean weight from the quadrature's albedo.
+pub(super) struct Bias {
+    pub mean: f64,
+    pub expected: f64,
+    /// What chance explains, but for the probability asked for.
+    pub chance: f64,
+    pub quadrature_error: f64,
+    /// What neither explains.
+    pub excess: f64,
+}
+
+impl Furnace {
+    /// The bias of channel `k`; chance exceeds its part with probability `tail`.
+    pub(super) fn bias(&self, k: usize, tail: f64) -> Bias {
+        let expected = self.quadrature[k] - self.unreachable;
+        let mean = self.continuous[k].mean();
+        let variance = (self.second_moment[k] - expected * expected)
+            .max(0.0)
+            .max(self.continuous[k].variance());
+        // The quadrature's nodes may have missed the summit of the weight.
+        let range = 1.5 * self.largest_weight;
+        let chance = bernstein_deviation(variance, range, self.draws, tail);
+        let quadrature_error = self.error[k] + self.unreachable_error;
+        Bias {
+            mean,
+            expected,
+            chance,
+            quadrature_error,
+            excess: (mean - expected).abs() - chance - quadrature_error,
+        }
+    }
+}
+
+/// Draws, and the quadrature over cells that follow them; `harder` multiplies cells and quadrature.
+fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
     let mut random = rng(c, Property::EnergyConservation, &index.to_string());
     let draws = if c.subject.sample.is_some() {
         c.settings.density_samples / 2
@@ -63,8 +122,7 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize) -> Furnace {
     };
     let (mut continuous, mut delta) = ([Moments::new(); 3], [Moments::new(); 3]);
     let mut delta_draws = 0;
-    let pilot = (draws / 4) as usize;
-    let mut points = Vec::with_capacity(pilot);
+    let mut points = Vec::with_capacity(draws as usize);
     let mut largest_weight: f64 = 0.0;
     for _ in 0..draws {
         let u = [random.next_f64(), random.next_f64(), random.next_f64()];
@@ -85,16 +143,20 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize) -> Furnace {
                 largest_weight = largest_weight.max(w);
             }
         }
-        if let Some(s) = s.filter(|s| !s.delta && s.wi.is_finite())
-            && points.len() < pilot
-        {
-            points.push(coordinates(s.wi));
+        if let Some(s) = s.filter(|s| !s.delta && s.wi.is_finite()) {
+            let brightest = s.weight.iter().fold(1.0, |a: f64, w| a.max(*w));
+            points.push(Pilot {
+                at: coordinates(s.wi),
+                density: s.pdf * brightest,
+            });
         }
     }
 
+    let cells = (u64::from(c.settings.cells) * harder) as f64;
     let rules = Rules {
-        max_points: (points.len() / c.settings.cells.max(1) as usize).max(8),
-        max_solid_angle: 0.1,
+        max_points: (points.len() as f64 / cells).max(8.0) as usize,
+        max_mass: 4.0 / cells,
+        max_solid_angle: 0.1 / harder as f64,
         // Without samples nothing else shows where a sharp lobe stands.
         seed_width: if draws > 0 { 0.01 } else { 1e-3 },
     };
@@ -123,7 +185,7 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize) -> Furnace {
         },
         &partition.cells,
         1e-5,
-        c.settings.quadrature_evaluations,
+        c.settings.quadrature_evaluations * harder,
     );
     let (v, e) = (integral.total.value, integral.total.error);
     Furnace {

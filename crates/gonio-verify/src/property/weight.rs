@@ -4,7 +4,7 @@ use super::furnace::{Furnace, outgoing};
 use super::rng;
 use crate::check::Checker;
 use crate::directions::{awkward, awkward_numbers};
-use crate::statistics::{bernstein_deviation, sidak};
+use crate::statistics::sidak;
 use crate::subject::SubjectSample;
 use crate::verdict::{Property, Verdict, Witness};
 use gonio_num::Vec3;
@@ -163,27 +163,21 @@ fn biased(c: &Checker, furnaces: &[Furnace], rate: f64) -> Found {
     let mut most = c.settings.integral_bound;
     for f in furnaces {
         for k in 0..3 {
-            let expected = f.quadrature[k] - f.unreachable;
-            let mean = f.continuous[k].mean();
-            let variance = (f.second_moment[k] - expected * expected)
-                .max(0.0)
-                .max(f.continuous[k].variance());
-            // The quadrature's nodes may have missed the summit of the weight.
-            let range = 1.5 * f.largest_weight;
-            let chance = bernstein_deviation(variance, range, f.draws, tail);
-            let error = f.error[k] + f.unreachable_error;
-            let excess = (mean - expected).abs() - chance - error;
-            if excess > most {
-                most = excess;
+            let b = f.bias(k, tail);
+            if b.excess > most {
+                most = b.excess;
                 worst = Some((
-                    (mean - expected).abs(),
-                    chance + error + c.settings.integral_bound,
+                    (b.mean - b.expected).abs(),
+                    b.chance + b.quadrature_error + c.settings.integral_bound,
                     Witness::at(f.wo)
-                        .value("mean weight", mean)
-                        .value("albedo by quadrature", expected)
-                        .value("explained by chance", chance)
-                        .value("quadrature error", error),
-                    format!("the mean weight is {mean:.5}, the albedo {expected:.5}"),
+                        .value("mean weight", b.mean)
+                        .value("albedo by quadrature", b.expected)
+                        .value("explained by chance", b.chance)
+                        .value("quadrature error", b.quadrature_error),
+                    format!(
+                        "the mean weight is {:.5}, the albedo {:.5}",
+                        b.mean, b.expected
+                    ),
                 ));
             }
         }
