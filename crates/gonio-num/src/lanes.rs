@@ -7,8 +7,8 @@
 // Loops over an index are what vectorises: no closure and no iterator stands between the loop and its instruction set.
 #![allow(clippy::needless_range_loop)]
 
-use crate::real::{lookup1, lookup2};
-use crate::{Mask, Real, Table1, Table2, Vec3, math};
+use crate::table::{lookup1, lookup2};
+use crate::{LoopState, Mask, Real, Table1, Table2, Vec3, math};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// `N` numbers of type `f32`, calculated with at once. N = 4, 8 and 16 match today's registers.
@@ -288,17 +288,15 @@ impl<const N: usize> Real for Lanes<N> {
 
     /// Goes on while any lane does; a lane that has ended keeps its state.
     #[inline(always)]
-    fn repeat<const K: usize>(
+    fn repeat_state<S: LoopState<Self>>(
         count: u32,
-        mut state: [Self; K],
-        mut body: impl FnMut(Self, [Self; K]) -> ([Self; K], LaneMask<N>),
-    ) -> [Self; K] {
+        mut state: S,
+        mut body: impl FnMut(Self, S) -> (S, LaneMask<N>),
+    ) -> S {
         let mut alive = LaneMask::splat(true);
         for i in 0..count {
             let (next, go_on) = body(Self::splat(i as f32), state);
-            for k in 0..K {
-                state[k] = Self::select(alive, next[k], state[k]);
-            }
+            state = S::select(alive, next, state);
             alive = alive & go_on;
             if !alive.any() {
                 break;

@@ -12,13 +12,16 @@
 
 mod affine;
 pub mod dispatch;
+pub mod dual;
 mod frame;
 pub mod lanes;
 pub mod math;
 mod real;
+mod table;
 mod vec3;
 
 pub use affine::Affine3;
 pub use frame::Frame;
-pub use real::{Mask, Real, Table1, Table2};
+pub use real::{LoopState, Mask, Real};
+pub use table::{Table1, Table2};
 pub use vec3::Vec3;

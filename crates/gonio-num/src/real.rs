@@ -1,6 +1,7 @@
 //! [`Real`], the number type that formulas are generic over, and its scalar implementations.
 
-use crate::math;
+use crate::table::{lookup1, lookup1_f64, lookup2, lookup2_f64};
+use crate::{Table1, Table2, math};
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -20,26 +21,32 @@ impl Mask for bool {
     }
 }
 
-/// A one-dimensional table, linearly interpolated by [`Real::table1`].
-#[derive(Debug, Clone, Copy)]
-pub struct Table1 {
-    /// Name in exported shader code: a valid identifier, unique in the program.
-    pub name: &'static str,
-    /// Samples at x = i / (n − 1), n ≥ 2.
-    pub data: &'static [f32],
+/// What a loop carries from step to step: some numbers of type `R`. An array is one.
+pub trait LoopState<R: Real>: Copy {
+    /// `a` where the mask is true, `b` elsewhere, number by number.
+    fn select(mask: R::Mask, a: Self, b: Self) -> Self;
+    /// The state with each number replaced by `f` of it, always in the same order.
+    fn map(self, f: &mut impl FnMut(R) -> R) -> Self;
 }
 
-/// A two-dimensional table, bilinearly interpolated by [`Real::table2`].
-#[derive(Debug, Clone, Copy)]
-pub struct Table2 {
-    /// Name in exported shader code: a valid identifier, unique in the program.
-    pub name: &'static str,
-    /// Samples a row, along x; at least 2.
-    pub width: usize,
-    /// Rows, along y; at least 2.
-    pub height: usize,
-    /// Row-major samples: `data[j * width + i]` stands at x = i / (width − 1), y = j / (height − 1).
-    pub data: &'static [f32],
+impl<R: Real, const K: usize> LoopState<R> for [R; K] {
+    #[inline(always)]
+    fn select(mask: R::Mask, a: Self, b: Self) -> Self {
+        let mut r = a;
+        for i in 0..K {
+            r[i] = R::select(mask, a[i], b[i]);
+        }
+        r
+    }
+
+    #[inline(always)]
+    fn map(self, f: &mut impl FnMut(R) -> R) -> Self {
+        let mut r = self;
+        for x in &mut r {
+            *x = f(*x);
+        }
+        r
+    }
 }
 
 /// A real number that formulas are written over.
@@ -72,9 +79,9 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// |self|.
     fn abs(self) -> Self;
-    /// The smaller of the two; `other` if `self` is NaN.
+    /// The smaller of the two; `other` if either is NaN.
     fn min(self, other: Self) -> Self;
-    /// The larger of the two; `other` if `self` is NaN.
+    /// The larger of the two; `other` if either is NaN.
     fn max(self, other: Self) -> Self;
     /// The largest whole number ≤ self. Derivative 0.
     fn floor(self) -> Self;
@@ -86,7 +93,7 @@ pub trait Real:
     fn sin(self) -> Self;
     /// Cosine of an angle in radians; in `f32` accurate for |x| ≤ 8192.
     fn cos(self) -> Self;
-    /// Angle in [0, π] whose cosine is self; self is clamped to [−1, 1].
+    /// Angle in [0, π] whose cosine is self; self is clamped to [−1, 1], NaN stays NaN.
     fn acos(self) -> Self;
     /// Angle of the point (x, y) = (`x`, `self`) in [−π, π]; 0 at the origin.
     fn atan2(self, x: Self) -> Self;
@@ -106,13 +113,26 @@ pub trait Real:
     /// Bilinear interpolation in `table` at (`x`, `y`), each clamped to [0, 1].
     fn table2(table: &'static Table2, x: Self, y: Self) -> Self;
 
+    /// [`Real::repeat`] over any [`LoopState`].
+    fn repeat_state<S: LoopState<Self>>(
+        count: u32,
+        state: S,
+        body: impl FnMut(Self, S) -> (S, Self::Mask),
+    ) -> S;
+
     /// A bounded loop over a state of `K` numbers: at most `count` times `state = body(i, state)`, going on while the mask
     /// that `body` returns is true. Where it became false the state stays as that last step left it.
+    ///
+    /// `body` must be a pure function of its arguments and of values from outside the loop: batches run steps that some lanes
+    /// no longer need, and a shader's loop is recorded from one call.
+    #[inline(always)]
     fn repeat<const K: usize>(
         count: u32,
         state: [Self; K],
         body: impl FnMut(Self, [Self; K]) -> ([Self; K], Self::Mask),
-    ) -> [Self; K];
+    ) -> [Self; K] {
+        Self::repeat_state(count, state, body)
+    }
 
     /// 0.
     #[inline(always)]
@@ -139,12 +159,12 @@ pub trait Real:
     fn ge(self, other: Self) -> Self::Mask {
         other.le(self)
     }
-    /// self limited to [low, high].
+    /// self limited to [low, high]; low for a NaN.
     #[inline(always)]
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)
     }
-    /// self limited to [0, 1].
+    /// self limited to [0, 1]; 0 for a NaN.
     #[inline(always)]
     fn saturate(self) -> Self {
         self.clamp(Self::zero(), Self::one())
@@ -181,7 +201,8 @@ pub trait Real:
     /// tan of an angle in radians.
     #[inline(always)]
     fn tan(self) -> Self {
-        self.sin() / self.cos()
+        let (sin, cos) = self.sin_cos();
+        sin / cos
     }
     /// Angle in [−π/2, π/2] whose sine is self; self is clamped to [−1, 1].
     #[inline(always)]
@@ -210,38 +231,6 @@ pub trait Real:
         self.max(Self::zero()).sqrt()
     }
 }
-
-/// Index and weight of the lower of the two samples around x in [0, 1] of a table of n, and the look-ups with them.
-macro_rules! lookups {
-    ($t:ty, $bracket:ident, $lookup1:ident, $lookup2:ident) => {
-        #[inline(always)]
-        fn $bracket(n: usize, x: $t) -> (usize, $t) {
-            let f = x.clamp(0.0, 1.0) * (n - 1) as $t;
-            // A NaN becomes index 0 with weight NaN, so it stays visible.
-            let i = (f as usize).min(n - 2);
-            (i, f - i as $t)
-        }
-
-        #[inline(always)]
-        pub(crate) fn $lookup1(t: &Table1, x: $t) -> $t {
-            let (i, w) = $bracket(t.data.len(), x);
-            <$t>::from(t.data[i]) * (1.0 - w) + <$t>::from(t.data[i + 1]) * w
-        }
-
-        #[inline(always)]
-        pub(crate) fn $lookup2(t: &Table2, x: $t, y: $t) -> $t {
-            let (i, u) = $bracket(t.width, x);
-            let (j, v) = $bracket(t.height, y);
-            let row = j * t.width + i;
-            let (low, high) = (&t.data[row..], &t.data[row + t.width..]);
-            let low = <$t>::from(low[0]) * (1.0 - u) + <$t>::from(low[1]) * u;
-            let high = <$t>::from(high[0]) * (1.0 - u) + <$t>::from(high[1]) * u;
-            low * (1.0 - v) + high * v
-        }
-    };
-}
-lookups!(f32, bracket_f32, lookup1, lookup2);
-lookups!(f64, bracket_f64, lookup1_f64, lookup2_f64);
 
 macro_rules! scalar_real {
     ($t:ty, $floor:path, $exp:path, $ln:path, $sin:path, $cos:path, $acos:path, $atan2:path, $lookup1:path, $lookup2:path) => {
@@ -320,11 +309,11 @@ macro_rules! scalar_real {
                 $lookup2(table, x, y)
             }
             #[inline(always)]
-            fn repeat<const K: usize>(
+            fn repeat_state<S: LoopState<Self>>(
                 count: u32,
-                mut state: [Self; K],
-                mut body: impl FnMut(Self, [Self; K]) -> ([Self; K], bool),
-            ) -> [Self; K] {
+                mut state: S,
+                mut body: impl FnMut(Self, S) -> (S, bool),
+            ) -> S {
                 for i in 0..count {
                     let (next, go_on) = body(i as $t, state);
                     state = next;
