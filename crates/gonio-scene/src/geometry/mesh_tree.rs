@@ -1,0 +1,126 @@
+//! [`MeshTree`], the triangles of one mesh, ready for ray queries. Instances share it.
+
+use super::kernel::Kernel;
+use super::nearest::Nearest;
+use super::tree::{Purpose, WideTree};
+use super::triangle::{LANES, TriangleBlock, TriangleRay};
+use super::walk::{BoxRay, Visitor, walk};
+use super::{Aabb, Ray};
+use crate::mesh::TriangleMesh;
+
+/// A tree whose leaves are blocks of up to eight triangles, corners copied in.
+///
+/// Memory: about 95 bytes a triangle beside the mesh itself (80 in blocks, filled to half, and 15 in nodes).
+#[derive(Debug, Default)]
+pub(crate) struct MeshTree {
+    pub(crate) tree: WideTree,
+    pub(crate) blocks: Vec<TriangleBlock>,
+    /// Triangles left out because they have no area.
+    pub(crate) degenerate: usize,
+}
+
+impl MeshTree {
+    /// Builds the tree of a mesh that has been checked.
+    pub(crate) fn build(mesh: &TriangleMesh) -> Self {
+        let ids: Vec<u32> = (0..mesh.indices.len())
+            .filter(|&i| !mesh.is_degenerate(i))
+            .map(|i| i as u32)
+            .collect();
+        let boxes = ids
+            .iter()
+            .map(|&i| Aabb::around(mesh.corners(i as usize)))
+            .collect();
+        let mut blocks = Vec::with_capacity(ids.len() / 4);
+        let tree = WideTree::build(boxes, Purpose::Triangles, &mut |leaf| {
+            let first = blocks.len();
+            for part in leaf.chunks(LANES) {
+                let mut block = TriangleBlock::vacant();
+                for (lane, &k) in part.iter().enumerate() {
+                    let id = ids[k as usize];
+                    block.set(lane, mesh.corners(id as usize), id);
+                }
+                blocks.push(block);
+            }
+            (first as u32, (blocks.len() - first) as u32)
+        });
+        Self {
+            tree,
+            blocks,
+            degenerate: mesh.indices.len() - ids.len(),
+        }
+    }
+
+    /// Bytes held.
+    pub(crate) fn bytes(&self) -> usize {
+        self.tree.bytes() + self.blocks.len() * size_of::<TriangleBlock>()
+    }
+
+    /// Looks for triangles along `ray`, given in the mesh's coordinates; `nearest` holds the best so far, of any instance.
+    /// Returns whether the search is over: only if `ANY` and something was found.
+    #[inline(always)]
+    pub(crate) fn search<K: Kernel, const ANY: bool>(
+        &self,
+        kernel: K,
+        ray: &Ray,
+        instance: u32,
+        nearest: &mut Nearest,
+    ) -> bool {
+        let exact = TriangleRay::new(ray.origin, ray.direction);
+        let mut visitor = Triangles::<K, ANY> {
+            kernel,
+            blocks: &self.blocks,
+            prepared: kernel.prepare_triangles(&exact),
+            exact,
+            instance,
+            nearest,
+            found: false,
+        };
+        let boxes = BoxRay::new(ray.origin, ray.direction, &self.tree.bounds);
+        walk(kernel, &self.tree, &boxes, &mut visitor);
+        ANY && visitor.found
+    }
+}
+
+struct Triangles<'a, K: Kernel, const ANY: bool> {
+    kernel: K,
+    blocks: &'a [TriangleBlock],
+    prepared: K::Triangles,
+    exact: TriangleRay,
+    instance: u32,
+    nearest: &'a mut Nearest,
+    found: bool,
+}
+
+impl<K: Kernel, const ANY: bool> Visitor for Triangles<'_, K, ANY> {
+    const ANY: bool = ANY;
+
+    #[inline(always)]
+    fn t_max(&self) -> f32 {
+        self.nearest.t
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, first: u32, count: u32) -> bool {
+        let (first, count) = (first as usize, count as usize);
+        for block in &self.blocks[first..first + count] {
+            let mut hits = self
+                .kernel
+                .triangles(block, &self.prepared, self.nearest.t);
+            while hits != 0 {
+                let lane = hits.trailing_zeros() as usize % LANES;
+                hits &= hits - 1;
+                if let Some(c) = self.exact.cross(block, lane)
+                    && self
+                        .nearest
+                        .offer(c.t, self.instance, block.id[lane], c.u, c.v)
+                {
+                    self.found = true;
+                    if ANY {
+                        return true;
+                    }
+                }
+            }
+        }
+        false
+    }
+}

@@ -1,0 +1,138 @@
+//! The two ray queries, and the choice of instructions for them.
+
+use super::kernel::{Kernel, Portable};
+use super::nearest::Nearest;
+use super::placed::Kind;
+use super::shape::{cross_plane, cross_sphere};
+use super::walk::{BoxRay, Visitor, walk};
+use super::{Geometry, Hit, Ray};
+
+/// Which kernel this processor gets.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Choice {
+    Portable,
+    #[cfg(target_arch = "x86_64")]
+    Avx2(super::avx2::Avx2),
+}
+
+impl Choice {
+    pub(super) fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(kernel) = super::avx2::Avx2::detect() {
+            return Self::Avx2(kernel);
+        }
+        Self::Portable
+    }
+}
+
+impl Geometry {
+    /// The nearest surface along a ray, if any. A ray that isn't valid ([`Ray::is_valid`]) hits nothing.
+    #[inline]
+    pub fn intersect(&self, ray: &Ray) -> Option<Hit> {
+        match self.choice {
+            Choice::Portable => self.intersect_portable(ray),
+            #[cfg(target_arch = "x86_64")]
+            Choice::Avx2(kernel) => super::avx2::intersect(kernel, self, ray),
+        }
+    }
+
+    /// Whether anything lies along a ray. It ends at the first thing found, so it is quicker than
+    /// [`Geometry::intersect`], and says the same.
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        match self.choice {
+            Choice::Portable => self.occluded_portable(ray),
+            #[cfg(target_arch = "x86_64")]
+            Choice::Avx2(kernel) => super::avx2::occluded(kernel, self, ray),
+        }
+    }
+
+    #[inline(never)]
+    pub(super) fn intersect_portable(&self, ray: &Ray) -> Option<Hit> {
+        self.search::<Portable, false>(Portable, ray).hit()
+    }
+
+    #[inline(never)]
+    pub(super) fn occluded_portable(&self, ray: &Ray) -> bool {
+        self.search::<Portable, true>(Portable, ray).hit().is_some()
+    }
+
+    /// Both queries, for any kernel.
+    #[inline(always)]
+    pub(super) fn search<K: Kernel, const ANY: bool>(&self, kernel: K, ray: &Ray) -> Nearest {
+        let mut visitor = Instances::<K, ANY> {
+            kernel,
+            geometry: self,
+            ray,
+            nearest: Nearest::none(ray.t_max),
+        };
+        if ray.is_valid() {
+            let boxes = BoxRay::new(ray.origin, ray.direction, &self.top.bounds);
+            walk(kernel, &self.top, &boxes, &mut visitor);
+        }
+        visitor.nearest
+    }
+}
+
+struct Instances<'a, K: Kernel, const ANY: bool> {
+    kernel: K,
+    geometry: &'a Geometry,
+    ray: &'a Ray,
+    nearest: Nearest,
+}
+
+impl<K: Kernel, const ANY: bool> Visitor for Instances<'_, K, ANY> {
+    const ANY: bool = ANY;
+
+    #[inline(always)]
+    fn t_max(&self) -> f32 {
+        self.nearest.t
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, first: u32, count: u32) -> bool {
+        for k in first..first + count {
+            let instance = self.geometry.order[k as usize];
+            let placed = &self.geometry.placed[instance as usize];
+            let found = match placed.kind {
+                Kind::Mesh(tree) => {
+                    let ray = placed.ray_to_mesh(self.ray);
+                    // Overflow or underflow on the way there: nothing can be seen.
+                    ray.is_valid()
+                        && self.geometry.trees[tree as usize].search::<K, ANY>(
+                            self.kernel,
+                            &ray,
+                            instance,
+                            &mut self.nearest,
+                        )
+                }
+                Kind::Sphere => {
+                    let (o, d) = placed.ray_to_object(self.ray);
+                    // The end is given a little more, so that a tie is still offered.
+                    match cross_sphere(o, d, f32::INFINITY) {
+                        Some(t) => self.nearest.offer(t, instance, 0, 0.0, 0.0),
+                        None => false,
+                    }
+                }
+                Kind::Rectangle | Kind::Disk => {
+                    let (o, d) = placed.ray_to_object(self.ray);
+                    match cross_plane(o, d) {
+                        Some((t, x, y)) => {
+                            let inside = if placed.kind == Kind::Disk {
+                                x * x + y * y <= 1.0
+                            } else {
+                                x.abs() <= 1.0 && y.abs() <= 1.0
+                            };
+                            inside && self.nearest.offer(t, instance, 0, x as f32, y as f32)
+                        }
+                        None => false,
+                    }
+                }
+            };
+            if ANY && found {
+                return true;
+            }
+        }
+        false
+    }
+}

@@ -1,0 +1,258 @@
+//! [`SurfacePoint`], what is known of a surface where a ray met it, and rays that leave it.
+
+use super::placed::{Kind, Placed};
+use super::{Geometry, Hit, Ray, Shape};
+use crate::mesh::TriangleMesh;
+use gonio_num::{Frame, Real, Vec3};
+use std::f64::consts::{PI, TAU};
+
+/// A point of a surface, in world coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfacePoint {
+    /// Position \[m\], on the surface itself: not origin + t · direction, but the shape's own equation.
+    pub p: Vec3<f32>,
+    /// Bound on the distance between p and the true surface, with room for the roundings of a ray that starts there \[m\].
+    pub error: f32,
+    /// Geometric normal, unit, outwards (triangles: by winding), **not** turned to the ray.
+    pub ng: Vec3<f32>,
+    /// Shading normal, unit, on the side of `ng`.
+    pub ns: Vec3<f32>,
+    /// Tangent, unit, across `ns`: given, or along growing u, or else arbitrary.
+    pub tangent: Vec3<f32>,
+    /// ±1: the bitangent is `bitangent_sign · ns × tangent`, along falling v (upwards in the image, as glTF has it).
+    pub bitangent_sign: f32,
+    /// First texture coordinates, v downwards; (0, 0) if there are none.
+    pub uv: [f32; 2],
+    /// Second texture coordinates; (0, 0) if there are none.
+    pub uv1: [f32; 2],
+    /// Linear RGBA vertex colour; white if there is none.
+    pub colour: [f32; 4],
+    /// Distance along the ray, as in the hit.
+    pub t: f32,
+    /// Index of the instance.
+    pub instance: u32,
+    /// Index of the triangle in its mesh; 0 for the other shapes.
+    pub primitive: u32,
+}
+
+/// The share of the way to a target that a shadow ray leaves out at its end, so that it doesn't meet the target's surface.
+const SHORT: f32 = 1e-4;
+
+impl SurfacePoint {
+    /// The bitangent, unit: `bitangent_sign · ns × tangent`.
+    pub fn bitangent(&self) -> Vec3<f32> {
+        self.ns.cross(self.tangent) * self.bitangent_sign
+    }
+
+    /// p, moved off the surface to the side that `direction` leads to.
+    ///
+    /// The way is twice [`SurfacePoint::error`] along the geometric normal, which leads past the true surface and the
+    /// rounding of the new origin (Wächter and Binder 2019, Ray Tracing Gems, chapter 6, has the problem).
+    #[inline]
+    pub fn offset_origin(&self, direction: Vec3<f32>) -> Vec3<f32> {
+        let side = if direction.dot(self.ng) < 0.0 {
+            -2.0
+        } else {
+            2.0
+        };
+        self.p + self.ng * (side * self.error)
+    }
+
+    /// The endless ray that leaves in `direction` (unit), and doesn't meet the surface it leaves.
+    #[inline]
+    pub fn spawn_ray(&self, direction: Vec3<f32>) -> Ray {
+        Ray::new(self.offset_origin(direction), direction)
+    }
+
+    /// The ray that leaves towards `target` and stops just short of it: by 10⁻⁴ of the way, and by the rounding of the
+    /// target where that is more. If the target is p itself the ray hits nothing.
+    #[inline]
+    pub fn spawn_ray_to(&self, target: Vec3<f32>) -> Ray {
+        let origin = self.offset_origin(target - self.p);
+        let way = target - origin;
+        let distance = way.length();
+        let largest = target.x.abs().max(target.y.abs()).max(target.z.abs());
+        let short = (distance * SHORT).max(largest * (16.0 * f32::EPSILON));
+        if distance > short {
+            Ray {
+                origin,
+                direction: way * (1.0 / distance),
+                t_max: distance - short,
+            }
+        } else {
+            Ray {
+                origin,
+                direction: way,
+                t_max: 0.0,
+            }
+        }
+    }
+}
+
+/// What a shape knows of a point in its own coordinates; normals and tangents of any length.
+pub(super) struct Local {
+    pub(super) p: Vec3<f64>,
+    pub(super) ng: Vec3<f64>,
+    /// Zero: `ng`.
+    ns: Vec3<f64>,
+    /// Zero: arbitrary.
+    tangent: Vec3<f64>,
+    bitangent_sign: f32,
+    pub(super) uv: [f32; 2],
+    uv1: [f32; 2],
+    colour: [f32; 4],
+}
+
+impl Local {
+    fn plain(p: Vec3<f64>, ng: Vec3<f64>, tangent: Vec3<f64>, uv: [f64; 2]) -> Self {
+        Self {
+            p,
+            ng,
+            ns: Vec3::zero(),
+            tangent,
+            bitangent_sign: 1.0,
+            uv: uv.map(|x| x as f32),
+            uv1: [0.0; 2],
+            colour: [1.0; 4],
+        }
+    }
+
+    pub(super) fn sphere(p: Vec3<f64>) -> Self {
+        let n = p.normalize();
+        let phi = Real::atan2(n.y, n.x);
+        let u = if phi < 0.0 { phi / TAU + 1.0 } else { phi / TAU };
+        let v = Real::acos(n.z) / PI;
+        Self::plain(n, n, Vec3::new(-n.y, n.x, 0.0), [u, v])
+    }
+
+    pub(super) fn flat(x: f64, y: f64) -> Self {
+        Self::plain(
+            Vec3::new(x, y, 0.0),
+            Vec3::new(0.0, 0.0, 1.0),
+            Vec3::new(1.0, 0.0, 0.0),
+            [0.5 * (x + 1.0), 0.5 * (1.0 - y)],
+        )
+    }
+
+    pub(super) fn triangle(mesh: &TriangleMesh, triangle: usize, u: f32, v: f32) -> Self {
+        let corners = mesh.indices[triangle].map(|i| i as usize);
+        let (u, v) = (f64::from(u), f64::from(v));
+        let weights = [(1.0 - u - v).max(0.0), u, v];
+        let [a, b, c] = mesh.corners(triangle).map(Vec3::to_f64);
+        let p = a * weights[0] + b * weights[1] + c * weights[2];
+        let (ab, ac) = (b - a, c - a);
+        let mut local = Self::plain(p, ab.cross(ac), Vec3::zero(), [0.0; 2]);
+        let mix = |list: &[[f32; 2]]| {
+            if list.is_empty() {
+                [0.0; 2]
+            } else {
+                mixed(corners, weights, |i| list[i]).map(|x| x as f32)
+            }
+        };
+        local.uv = mix(&mesh.uvs);
+        local.uv1 = mix(&mesh.uvs1);
+        if !mesh.colours.is_empty() {
+            local.colour = mixed(corners, weights, |i| mesh.colours[i]).map(|x| x as f32);
+        }
+        if !mesh.normals.is_empty() {
+            // A corner without a normal counts with the triangle's own.
+            let unit = local.ng.normalize();
+            for (&i, &w) in corners.iter().zip(&weights) {
+                let n = mesh.normals[i].to_f64();
+                let length = n.length();
+                let n = if length > 0.0 { n / length } else { unit };
+                local.ns += n * w;
+            }
+        }
+        if !mesh.tangents.is_empty() {
+            let [x, y, z, w] = mixed(corners, weights, |i| mesh.tangents[i]);
+            local.tangent = Vec3::new(x, y, z);
+            local.bitangent_sign = if w < 0.0 { -1.0 } else { 1.0 };
+        } else if !mesh.uvs.is_empty() {
+            let [uv0, uv1, uv2] = corners.map(|i| mesh.uvs[i].map(f64::from));
+            let (du1, dv1) = (uv1[0] - uv0[0], uv1[1] - uv0[1]);
+            let (du2, dv2) = (uv2[0] - uv0[0], uv2[1] - uv0[1]);
+            // ∂p/∂u · det; the determinant is the signed area of the triangle in the image.
+            let det = du1 * dv2 - du2 * dv1;
+            if det != 0.0 {
+                local.tangent = (ab * dv2 - ac * dv1) * det.signum();
+                // With v downwards a triangle that isn't mirrored in the image has a negative determinant.
+                local.bitangent_sign = if det < 0.0 { 1.0 } else { -1.0 };
+            }
+        }
+        local
+    }
+}
+
+/// The values of three vertices, weighted.
+fn mixed<const N: usize>(
+    corners: [usize; 3],
+    weights: [f64; 3],
+    at: impl Fn(usize) -> [f32; N],
+) -> [f64; N] {
+    let mut sum = [0.0; N];
+    for (&i, &w) in corners.iter().zip(&weights) {
+        for (s, x) in sum.iter_mut().zip(at(i)) {
+            *s += w * f64::from(x);
+        }
+    }
+    sum
+}
+
+impl Placed {
+    /// A shape's point in the world.
+    pub(super) fn to_surface(&self, local: &Local, hit: &Hit) -> SurfacePoint {
+        let m = &self.to_world;
+        let p = m.transform_point(local.p);
+        let ng = m.transform_normal(local.ng).normalize();
+        let mut sign = local.bitangent_sign * self.handedness;
+        let mut ns = m.transform_normal(local.ns);
+        let length = ns.length();
+        // Normals that cancel, or none at all: the surface's own.
+        ns = if length > 1e-12 * local.ns.length().max(1e-300) && length.is_finite() {
+            ns / length
+        } else {
+            ng
+        };
+        if ns.dot(ng) < 0.0 {
+            ns = -ns;
+            sign = -sign;
+        }
+        let frame = Frame::from_normal_tangent(ns, m.transform_vector(local.tangent));
+        SurfacePoint {
+            p: p.to_f32(),
+            error: self.error_at(p),
+            ng: ng.to_f32(),
+            ns: ns.to_f32(),
+            tangent: frame.s.to_f32(),
+            bitangent_sign: sign,
+            uv: local.uv,
+            uv1: local.uv1,
+            colour: local.colour,
+            t: hit.t,
+            instance: hit.instance,
+            primitive: hit.primitive,
+        }
+    }
+}
+
+impl Geometry {
+    /// What is known of the surface at a hit.
+    ///
+    /// # Panics
+    /// If the hit isn't one of this geometry.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
+        let placed = &self.placed[hit.instance as usize];
+        let local = match (placed.kind, self.shape_of(hit.instance)) {
+            (Kind::Mesh(_), Shape::Mesh(mesh)) => {
+                Local::triangle(mesh, hit.primitive as usize, hit.u, hit.v)
+            }
+            (Kind::Sphere, _) => {
+                let (o, d) = placed.ray_to_object(ray);
+                Local::sphere(o + d * f64::from(hit.t))
+            }
+            _ => Local::flat(hit.u.into(), hit.v.into()),
+        };
+        placed.to_surface(&local, hit)
+    }
+}

@@ -1,0 +1,8 @@
+//! Tests of ray queries as a whole.
+
+mod agreement;
+mod leaving;
+mod placing;
+mod sampling;
+mod scenes;
+mod watertight;
