@@ -1,0 +1,102 @@
+//! [`BrdfError`], what can be wrong with a model's description or a table's file.
+
+use std::path::PathBuf;
+
+/// Why a reflection function could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum BrdfError {
+    /// No model has this name.
+    #[error("unknown reflection function `{name}`")]
+    UnknownModel {
+        /// The name as found.
+        name: String,
+        /// The nearest known name, if one is near.
+        suggestion: Option<String>,
+    },
+    /// The model has no parameter of this name.
+    #[error("`{model}` has no parameter `{name}`")]
+    UnknownParameter {
+        /// The model.
+        model: String,
+        /// The parameter's name as found.
+        name: String,
+        /// The nearest known parameter, if one is near.
+        suggestion: Option<String>,
+    },
+    /// A parameter's value is not one it may have.
+    #[error("parameter `{parameter}` of `{model}` is {found}; expected {expected}")]
+    Parameter {
+        /// The model.
+        model: String,
+        /// The parameter.
+        parameter: String,
+        /// What was found.
+        found: String,
+        /// What is allowed.
+        expected: String,
+    },
+    /// The description is not of the form `name:key=value,…`.
+    #[error("cannot read `{text}` at column {column}: expected {expected}")]
+    Syntax {
+        /// The whole description.
+        text: String,
+        /// Where, counting characters from 1.
+        column: usize,
+        /// What should stand there.
+        expected: String,
+    },
+    /// The model exists but cannot do what was asked of it.
+    #[error("{what}")]
+    Unsupported {
+        /// What, and why.
+        what: String,
+    },
+    /// A table's file is not what it should be.
+    #[error("{}: {place}: found {found}, expected {expected}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// Where in the file.
+        place: String,
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: String,
+    },
+    /// A file could not be read.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+impl BrdfError {
+    /// One line that helps to correct the mistake, where there is one.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::UnknownModel { suggestion, .. } => Some(match suggestion {
+                Some(s) => format!("did you mean `{s}`?"),
+                None => format!("known are: {}", crate::registry::names().join(", ")),
+            }),
+            Self::UnknownParameter {
+                model, suggestion, ..
+            } => Some(match suggestion {
+                Some(s) => format!("did you mean `{s}`?"),
+                None => match crate::registry::find(model) {
+                    Ok(info) if !info.parameters.is_empty() => {
+                        let names: Vec<_> = info.parameters.iter().map(|p| p.name).collect();
+                        format!("`{model}` has: {}", names.join(", "))
+                    }
+                    _ => format!("`{model}` has no parameters"),
+                },
+            }),
+            Self::Syntax { .. } => {
+                Some("write a model as name:key=value,key=value; a colour as r/g/b, #rrggbb or one number".into())
+            }
+            _ => None,
+        }
+    }
+}

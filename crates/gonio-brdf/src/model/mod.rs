@@ -1,0 +1,194 @@
+//! The models, one file each, and [`Model`], the enum that holds any of them.
+//!
+//! To add one: write its file beside these, with its formula, its `INFO` and its tests; then add its `mod` line and its
+//! line in `models!` below.
+
+pub mod blinn_phong;
+pub mod gltf;
+pub mod lambertian;
+pub mod mirror;
+pub mod oren_nayar;
+pub mod phong;
+pub mod scaled;
+pub mod sum;
+pub mod toon;
+pub mod torrance_sparrow;
+
+use crate::{Brdf, BrdfError, ModelInfo, ModelSpec, Number, Sample, registry};
+use gonio_num::{Real, Vec3};
+
+macro_rules! models {
+    ($($(#[$doc:meta])* $variant:ident: $module:ident,)*) => {
+        /// Any reflection function of the registry.
+        #[derive(Debug, Clone)]
+        pub enum Model<R: Real, const N: usize> {
+            $($(#[$doc])* $variant($module::$variant<R, N>),)*
+        }
+
+        /// Every model's entry.
+        pub(crate) const INFOS: &[ModelInfo] = &[$($module::INFO,)*];
+
+        impl<R: Number, const N: usize> Brdf<R, N> for Model<R, N> {
+            #[inline(always)]
+            fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
+                match self { $(Self::$variant(m) => m.eval(wi, wo),)* }
+            }
+            #[inline(always)]
+            fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
+                match self { $(Self::$variant(m) => m.pdf(wi, wo),)* }
+            }
+            #[inline(always)]
+            fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
+                match self { $(Self::$variant(m) => m.sample(wo, u),)* }
+            }
+            #[inline(always)]
+            fn albedo_estimate(&self, wo: Vec3<R>) -> R {
+                match self { $(Self::$variant(m) => m.albedo_estimate(wo),)* }
+            }
+        }
+
+        impl<R: Number, const N: usize> Model<R, N> {
+            /// From a description; see [`ModelSpec::build`].
+            pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
+                let info = spec.info()?;
+                $(if info.name == $module::INFO.name {
+                    return $module::$variant::from_spec(spec).map(Self::$variant);
+                })*
+                unreachable!("invariant: every entry of the registry is in this list")
+            }
+
+            /// The same model with another number type, each number converted by `f`.
+            pub fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Model<S, N> {
+                match self { $(Self::$variant(m) => Model::$variant(m.cast(f)),)* }
+            }
+
+            /// The registry's entry.
+            pub fn info(&self) -> &'static ModelInfo {
+                match self { $(Self::$variant(_) => &const { $module::INFO },)* }
+            }
+
+            fn set(&mut self, index: usize, value: [R; 3]) {
+                match self { $(Self::$variant(m) => m.set($module::INFO.parameters[index].name, value),)* }
+            }
+        }
+    };
+}
+
+models! {
+    /// A perfect mirror (T14).
+    Mirror: mirror,
+    /// Perfectly diffuse (T15).
+    Lambertian: lambertian,
+    /// Phong 1975: diffuse and a lobe around the mirror direction (T16).
+    Phong: phong,
+    /// Blinn 1977: diffuse and a lobe of the half vector.
+    BlinnPhong: blinn_phong,
+    /// Oren & Nayar 1994: rough diffuse.
+    OrenNayar: oren_nayar,
+    /// Torrance & Sparrow 1967: microfacets (T18).
+    TorranceSparrow: torrance_sparrow,
+    /// The metallic-roughness material of glTF 2.0.
+    Gltf: gltf,
+    /// A cartoon shader (T20).
+    Toon: toon,
+    /// A sum of models (T9b).
+    Sum: sum,
+    /// A model times a colour.
+    Scaled: scaled,
+}
+
+impl<R: Number, const N: usize> Model<R, N> {
+    /// Whether it reflects into discrete directions only: then `eval` and `pdf` are 0 everywhere.
+    pub fn is_delta(&self) -> bool {
+        match self {
+            Self::Mirror(_) => true,
+            Self::Sum(sum) => sum.parts.iter().all(Model::is_delta),
+            Self::Scaled(scaled) => scaled.of.is_delta(),
+            _ => false,
+        }
+    }
+
+    /// Whether its formula can be printed as shader code: not a table, nor anything that contains one.
+    pub fn is_recordable(&self) -> bool {
+        match self {
+            Self::Sum(sum) => sum.parts.iter().all(Model::is_recordable),
+            Self::Scaled(scaled) => scaled.of.is_recordable(),
+            other => other.info().recordable,
+        }
+    }
+}
+
+/// A parameter that a texture drives, found once by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ParameterSlot {
+    model: &'static str,
+    index: usize,
+}
+
+impl ParameterSlot {
+    /// The parameter `parameter` of the model `model`.
+    ///
+    /// # Errors
+    /// If there is no such model or parameter, or the parameter is a word or a file.
+    pub fn find(model: &str, parameter: &str) -> Result<Self, BrdfError> {
+        let info = registry::find(model)?;
+        let index = info.parameters.iter().position(|p| p.name == parameter);
+        let Some(index) = index else {
+            return Err(BrdfError::UnknownParameter {
+                model: model.into(),
+                name: parameter.into(),
+                suggestion: registry::suggest(parameter, info.parameters.iter().map(|p| p.name)),
+            });
+        };
+        if !info.parameters[index].is_continuous() {
+            return Err(BrdfError::Unsupported {
+                what: format!(
+                    "parameter `{parameter}` of `{model}` is not a number or colour: no texture can drive it"
+                ),
+            });
+        }
+        Ok(Self {
+            model: info.name,
+            index,
+        })
+    }
+}
+
+impl<const N: usize> Model<f32, N> {
+    /// Sets a parameter to `value`, of which a number takes the first component; it is limited to the declared range, NaN
+    /// to the low end. `Sum` and `Scaled` pass it on to their parts of that model.
+    pub fn set_parameter(&mut self, slot: ParameterSlot, value: [f32; 3]) {
+        match self {
+            Self::Sum(sum) if slot.model != sum::INFO.name => {
+                for part in &mut sum.parts {
+                    part.set_parameter(slot, value);
+                }
+            }
+            Self::Scaled(scaled) if slot.model != scaled::INFO.name => {
+                scaled.of.set_parameter(slot, value);
+            }
+            _ if self.info().name == slot.model => {
+                let (low, high) = match self.info().parameters[slot.index].kind {
+                    crate::Kind::Number { low, high, .. }
+                    | crate::Kind::Colour { low, high, .. } => (low as f32, high as f32),
+                    _ => return,
+                };
+                let mut limited = value;
+                for x in &mut limited {
+                    *x = Real::clamp(*x, low, high);
+                }
+                self.set(slot.index, limited);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The first `N` of three components; the last one is repeated for N > 3.
+pub(crate) fn components<R: Real, const N: usize>(value: [R; 3]) -> [R; N] {
+    let mut out = [value[0]; N];
+    for (k, x) in out.iter_mut().enumerate() {
+        *x = value[k.min(2)];
+    }
+    out
+}

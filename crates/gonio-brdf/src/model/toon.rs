@@ -1,0 +1,146 @@
+//! A cartoon shader (T20).
+
+use crate::part::colour::{add, cast, mean, only_where, scale};
+use crate::part::geometry::{Half, above, cosine_density, cosine_hemisphere, polar};
+use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
+use gonio_num::{Real, Vec3};
+use std::f64::consts::{FRAC_1_PI, PI};
+
+/// What the registry knows.
+pub const INFO: ModelInfo = ModelInfo {
+    name: "toon",
+    summary: "a cartoon shader: flat bands of light and a hard highlight; not physical",
+    paper: "Lake et al. 2000, \"Stylized Rendering Techniques for Scalable Real-Time 3D Animation\"",
+    parameters: &[
+        ParameterInfo::colour(
+            "reflectance",
+            (0.0, 1.0),
+            Some([0.5; 3]),
+            "reflectance ρ; also the albedo of every viewing direction",
+        ),
+        ParameterInfo::number(
+            "bands",
+            "",
+            (1.0, 32.0),
+            Some(3.0),
+            "number of steps from dark to bright, rounded to a whole number",
+        ),
+        ParameterInfo::colour(
+            "specular",
+            (0.0, 1.0),
+            Some([0.5; 3]),
+            "brightness of the highlight",
+        ),
+        ParameterInfo::number(
+            "highlight_deg",
+            "°",
+            (0.0, 45.0),
+            Some(8.0),
+            "angle between normal and half vector at the highlight's edge; 0: none",
+        ),
+    ],
+    positional: Some("reflectance"),
+    aliases: &[],
+    recordable: true,
+    declares: |_| Declares {
+        reciprocal: false,
+        ..Declares::physical(f64::INFINITY)
+    },
+};
+
+/// f = ρ/π · q(cosθi)/cosθi + ks/π · [θh ≤ edge], q(x) = ⌊x·bands + ½⌋/bands.
+///
+/// Under one light the reflected radiance f·cosθi is flat within each band. As ∫₀¹ q = ½, the diffuse part reflects exactly
+/// ρ of a uniform field towards every viewer. By design it is not reciprocal, and light from the bright edge of the lowest
+/// band returns up to 2ρ of its energy.
+#[derive(Debug, Clone, Copy)]
+pub struct Toon<R: Real, const N: usize> {
+    /// ρ, [0, 1].
+    pub reflectance: [R; N],
+    /// Number of bands, whole.
+    pub bands: R,
+    /// ks, [0, 1].
+    pub specular: [R; N],
+    /// Cosine of the half vector's angle at the highlight's edge.
+    pub cos_edge: R,
+}
+
+impl<R: Real, const N: usize> Toon<R, N> {
+    pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
+        Ok(Self {
+            reflectance: spec.colour("reflectance")?,
+            bands: R::lit(spec.real::<f64>("bands").round()),
+            specular: spec.colour("specular")?,
+            cos_edge: (spec.real::<R>("highlight_deg") * R::lit(PI / 180.0)).cos(),
+        })
+    }
+
+    pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Toon<S, N> {
+        Toon {
+            reflectance: cast(self.reflectance, f),
+            bands: f(self.bands),
+            specular: cast(self.specular, f),
+            cos_edge: f(self.cos_edge),
+        }
+    }
+
+    pub(crate) fn set(&mut self, parameter: &str, value: [R; 3]) {
+        match parameter {
+            "reflectance" => self.reflectance = super::components(value),
+            "specular" => self.specular = super::components(value),
+            "bands" => self.bands = (value[0] + R::lit(0.5)).floor(),
+            _ => self.cos_edge = (value[0] * R::lit(PI / 180.0)).cos(),
+        }
+    }
+
+    /// Probability of drawing within the highlight: its solid angle of half vectors is small, so is its albedo.
+    #[inline(always)]
+    fn highlight_probability(&self) -> R {
+        let s = mean(self.specular) * (R::one() - self.cos_edge) * R::lit(8.0);
+        s / (mean(self.reflectance) + s + R::lit(1e-20))
+    }
+}
+
+impl<R: Real, const N: usize> Brdf<R, N> for Toon<R, N> {
+    #[inline(always)]
+    fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
+        let half = Half::new(wi, wo);
+        // q(x)/x ≤ 2, and 0 for x below half a band: the division is guarded by the smallest such x.
+        let step = (wi.z * self.bands + R::lit(0.5)).floor();
+        let diffuse = step / (self.bands * wi.z).max(R::lit(0.01));
+        let lit = R::from_mask(half.h.z.ge(self.cos_edge) & self.cos_edge.lt(R::one()));
+        let f = add(
+            scale(self.reflectance, diffuse * R::lit(FRAC_1_PI)),
+            scale(self.specular, lit * R::lit(FRAC_1_PI)),
+        );
+        only_where(above(wi, wo), f)
+    }
+
+    #[inline(always)]
+    fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
+        let half = Half::new(wi, wo);
+        let inside = half.h.z.ge(self.cos_edge) & self.cos_edge.lt(R::one());
+        // Half vectors uniform in the cone of 2π(1 − cos edge) sr, times dh/dωi = 1/(4 cosθ′).
+        let cone = (R::one() - self.cos_edge).max(R::lit(1e-12)) * R::lit(8.0 * PI);
+        let spot = (cone * half.cos.max(R::lit(1e-15))).recip();
+        let p = self.highlight_probability();
+        let density = p.lerp(cosine_density(wi), R::select(inside, spot, R::zero()));
+        R::select(above(wi, wo), density, R::zero())
+    }
+
+    #[inline(always)]
+    fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
+        let diffuse = cosine_hemisphere(u[0], u[1]);
+        let cos = R::one() - u[1] * (R::one() - self.cos_edge);
+        let h = polar(cos, (R::one() - cos * cos).safe_sqrt(), u[0]);
+        let down = Vec3::new(R::zero(), R::zero(), -R::one());
+        let spot = Vec3::select(wo.dot(h).gt(R::zero()), wo.reflect(h), down);
+        let wi = Vec3::select(u[2].lt(self.highlight_probability()), spot, diffuse);
+        Sample::continuous(wi, self.eval_cos(wi, wo), self.pdf(wi, wo))
+    }
+
+    #[inline(always)]
+    fn albedo_estimate(&self, _wo: Vec3<R>) -> R {
+        mean(self.reflectance) + mean(self.specular) * (R::one() - self.cos_edge) * R::lit(8.0)
+    }
+}

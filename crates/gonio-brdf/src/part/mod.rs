@@ -1,0 +1,11 @@
+//! The parts that microfacet models are made of: Fresnel reflectance, normal distributions, masking and shadowing,
+//! their directional albedo, and measured metals.
+
+pub mod albedo;
+pub(crate) mod colour;
+pub mod distribution;
+pub mod fresnel;
+pub mod geometry;
+pub mod masking;
+pub mod metal;
+pub(crate) mod special;
