@@ -19,3 +19,8 @@ pub mod warp;
 mod testing;
 
 pub use error::RadiometryError;
+
+/// The examples of the README, as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -332,8 +332,8 @@ mod tests {
         let found = hemisphere(&Tolerance::default(), |w| [1.0, w.z, w.x * w.x, w.y]);
         let exact = [2.0 * PI, PI, 2.0 * PI / 3.0, 0.0];
         assert!(found.converged);
-        for n in 0..4 {
-            assert!((found.value[n] - exact[n]).abs() < 1e-10);
+        for (value, exact) in found.value.iter().zip(exact) {
+            assert!((value - exact).abs() < 1e-10);
         }
         let whole = sphere(&Tolerance::default(), |_| [1.0]);
         assert!((whole.value[0] - 4.0 * PI).abs() < 1e-12);

@@ -3,7 +3,7 @@
 use gonio_num::Real;
 use std::f64::consts::{PI, TAU};
 
-/// The solid angle [sr] of the cone whose half-angle has the cosine `cos_max` in [−1, 1]: 2π (1 − `cos_max`).
+/// The solid angle (sr) of the cone whose half-angle has the cosine `cos_max` in [−1, 1]: 2π (1 − `cos_max`).
 ///
 /// Cancels for narrow cones: [`cone_of_angle`] and [`cap`] don't.
 #[inline(always)]
@@ -11,19 +11,19 @@ pub fn cone<R: Real>(cos_max: R) -> R {
     cap(R::one() - cos_max)
 }
 
-/// The solid angle [sr] of the cone of half-angle `theta_max` [rad] in [0, π]: 4π sin²(θ/2).
+/// The solid angle (sr) of the cone of half-angle `theta_max` (rad) in [0, π]: 4π sin²(θ/2).
 #[inline(always)]
 pub fn cone_of_angle<R: Real>(theta_max: R) -> R {
     R::lit(4.0 * PI) * (R::lit(0.5) * theta_max).sin().sq()
 }
 
-/// The solid angle [sr] of the cap of the unit sphere of height `height` = 1 − cos θmax in [0, 2]: 2π h, by Archimedes.
+/// The solid angle (sr) of the cap of the unit sphere of height `height` = 1 − cos θmax in [0, 2]: 2π h, by Archimedes.
 #[inline(always)]
 pub fn cap<R: Real>(height: R) -> R {
     R::lit(TAU) * height
 }
 
-/// The solid angle [sr] of a sphere of radius `radius` ≥ 0 whose centre is at `distance` ≥ 0 (one unit of length):
+/// The solid angle (sr) of a sphere of radius `radius` ≥ 0 whose centre is at `distance` ≥ 0 (one unit of length):
 /// 2π s² / (1 + √(1 − s²)) with s = r/d. From inside 4π, from the surface 2π.
 #[inline(always)]
 pub fn sphere<R: Real>(radius: R, distance: R) -> R {
@@ -33,7 +33,7 @@ pub fn sphere<R: Real>(radius: R, distance: R) -> R {
     R::select(distance.lt(radius), R::lit(4.0 * PI), seen)
 }
 
-/// The solid angle [sr] of a disk of radius `radius` ≥ 0 from a point of its axis at `distance` > 0:
+/// The solid angle (sr) of a disk of radius `radius` ≥ 0 from a point of its axis at `distance` > 0:
 /// 2π (1 − d/√(d² + r²)), without cancellation. 2π as the distance goes to 0.
 #[inline(always)]
 pub fn disk<R: Real>(radius: R, distance: R) -> R {

@@ -5,7 +5,7 @@
 
 use gonio_num::{Real, Vec3};
 
-/// dω / (dθ dφ) = sinθ [sr rad⁻²], for θ in [0, π] [rad]: 0 at the poles. (5) with r = 1
+/// dω / (dθ dφ) = sinθ (sr rad⁻²), for θ in [0, π] (rad): 0 at the poles. (5) with r = 1
 #[inline(always)]
 pub fn solid_angle_per_angles<R: Real>(theta: R) -> R {
     theta.sin()
@@ -18,13 +18,13 @@ pub fn solid_angle_per_cosine<R: Real>() -> R {
     -R::one()
 }
 
-/// dA / (dθ dφ) = r² sinθ on the sphere of radius `r` [length²]. (5)
+/// dA / (dθ dφ) = r² sinθ on the sphere of radius `r` (length²). (5)
 #[inline(always)]
 pub fn sphere_area_per_angles<R: Real>(r: R, theta: R) -> R {
     r * r * theta.sin()
 }
 
-/// dω / dA = |cosθ| / r² [sr per length²]: the solid angle that an area element subtends.
+/// dω / dA = |cosθ| / r² (sr per length²): the solid angle that an area element subtends.
 ///
 /// - `to_surface`: from the point of view to the element, of length r > 0
 /// - `normal`: the element's unit normal; its sign doesn't matter

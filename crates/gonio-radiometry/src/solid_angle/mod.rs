@@ -1,4 +1,4 @@
-//! Solid angles (T2): Ω = A / r² [sr], of the sphere 4π.
+//! Solid angles (T2): Ω = A / r² (sr), of the sphere 4π.
 //!
 //! - [`triangle()`], [`polygon()`], [`rectangle()`], [`cone()`], [`cap()`], [`sphere()`], [`disk()`]: the solid angle of a shape
 //! - [`projected`]: solid angles weighted by the cosine, which are irradiances under unit radiance and π times form

@@ -2,7 +2,7 @@
 
 use gonio_num::{Real, Vec3};
 
-/// The solid angle [sr] of the spherical triangle with unit vertices, in [0, 2π], whichever way it turns.
+/// The solid angle (sr) of the spherical triangle with unit vertices, in [0, 2π], whichever way it turns.
 ///
 /// tan(Ω/2) = |det(a, b, c)| / (1 + a·b + b·c + c·a)
 ///
@@ -24,7 +24,7 @@ fn signed_triangle<R: Real>([a, b, c]: [Vec3<R>; 3]) -> R {
     R::lit(2.0) * det.atan2(denominator)
 }
 
-/// The solid angle [sr] of the flat triangle with these vertices seen from `from`, in [0, 2π]. A vertex at `from` counts as
+/// The solid angle (sr) of the flat triangle with these vertices seen from `from`, in [0, 2π]. A vertex at `from` counts as
 /// lying nowhere: the result is then not a solid angle, but finite.
 #[inline(always)]
 pub fn triangle_from<R: Real>(vertices: [Vec3<R>; 3], from: Vec3<R>) -> R {
@@ -36,7 +36,7 @@ pub fn triangle_from<R: Real>(vertices: [Vec3<R>; 3], from: Vec3<R>) -> R {
     ])
 }
 
-/// The solid angle [sr] of the flat rectangle `corner` + s `edge_x` + t `edge_y`, s and t in [0, 1], seen from `from`, in
+/// The solid angle (sr) of the flat rectangle `corner` + s `edge_x` + t `edge_y`, s and t in [0, 1], seen from `from`, in
 /// [0, 2π]: its two triangles. The edges need not be perpendicular (a parallelogram).
 ///
 /// [`SphericalRectangle`](crate::warp::SphericalRectangle) samples it.
@@ -49,7 +49,7 @@ pub fn rectangle<R: Real>(corner: Vec3<R>, edge_x: Vec3<R>, edge_y: Vec3<R>, fro
     triangle([a, b, c]) + triangle([a, c, d])
 }
 
-/// The solid angle [sr] of the spherical polygon with these unit vertices, in order: the signed sum of a fan of triangles,
+/// The solid angle (sr) of the spherical polygon with these unit vertices, in order: the signed sum of a fan of triangles,
 /// so the polygon need not be convex. Fewer than three vertices: 0.
 ///
 /// The polygon must lie in an open half-space of the first vertex (no vertex opposite to it), and not cross itself.

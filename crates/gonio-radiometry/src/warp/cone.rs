@@ -14,7 +14,7 @@ pub fn uniform_cone<R: Real>(u: [R; 2], cos_max: R) -> Vec3<R> {
     uniform_cap(u, R::one() - cos_max)
 }
 
-/// Density of [`uniform_cone`] at the unit direction `w` [sr⁻¹]: 1/(2π (1 − `cos_max`)) inside, else 0.
+/// Density of [`uniform_cone`] at the unit direction `w` (sr⁻¹): 1/(2π (1 − `cos_max`)) inside, else 0.
 #[inline(always)]
 pub fn uniform_cone_density<R: Real>(w: Vec3<R>, cos_max: R) -> R {
     uniform_cap_density(w, R::one() - cos_max)
@@ -37,7 +37,7 @@ pub fn uniform_cap<R: Real>(u: [R; 2], height: R) -> Vec3<R> {
     around_axis(u[1], across, R::one() - below)
 }
 
-/// Density of [`uniform_cap`] at the unit direction `w` [sr⁻¹]: 1/(2π `height`) inside, else 0. Infinite for height 0.
+/// Density of [`uniform_cap`] at the unit direction `w` (sr⁻¹): 1/(2π `height`) inside, else 0. Infinite for height 0.
 #[inline(always)]
 pub fn uniform_cap_density<R: Real>(w: Vec3<R>, height: R) -> R {
     let outside = height.lt(depth(w));

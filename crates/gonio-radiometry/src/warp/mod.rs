@@ -2,12 +2,12 @@
 //!
 //! For each family `X`: `X(u)` maps u in [0, 1]² (a uniform u gives a sample of density `X_density`), `X_density(w)` is
 //! the density at a point or direction, 0 outside the domain, and `X_inverse(w)` is the u that maps to w (in [0, 1]²; for
-//! a w outside the domain it is unspecified, but finite). Densities of directions are per solid angle [sr⁻¹].
+//! a w outside the domain it is unspecified, but finite). Densities of directions are per solid angle (sr⁻¹).
 //!
 //! Directions are unit vectors around +z. u = 0 and u = 1 are valid and give finite points of the domain; the density
 //! there may be 0 where it vanishes on the domain's border (a cosine at the horizon).
 //!
-//! These are generic over [`Real`](gonio_num::Real): one source for `f32`, `f64`, lanes, duals and shader code. The tables
+//! These are generic over [`Real`]: one source for `f32`, `f64`, lanes, duals and shader code. The tables
 //! ([`Discrete`], [`Piecewise1d`], [`Piecewise2d`]) search, so they are for scalars: data in `f32`, sums in `f64`.
 
 mod cdf;

@@ -12,7 +12,7 @@ pub fn uniform_hemisphere<R: Real>(u: [R; 2]) -> Vec3<R> {
     around_axis(u[1], across, z)
 }
 
-/// Density of [`uniform_hemisphere`] at the unit direction `w` [sr⁻¹]: 1/2π for w.z ≥ 0, else 0.
+/// Density of [`uniform_hemisphere`] at the unit direction `w` (sr⁻¹): 1/2π for w.z ≥ 0, else 0.
 #[inline(always)]
 pub fn uniform_hemisphere_density<R: Real>(w: Vec3<R>) -> R {
     R::select(w.z.lt(R::zero()), R::zero(), R::lit(0.5 * FRAC_1_PI))
@@ -32,7 +32,7 @@ pub fn uniform_sphere<R: Real>(u: [R; 2]) -> Vec3<R> {
     around_axis(u[1], across, z)
 }
 
-/// Density of [`uniform_sphere`] [sr⁻¹]: 1/4π for every direction.
+/// Density of [`uniform_sphere`] (sr⁻¹): 1/4π for every direction.
 #[inline(always)]
 pub fn uniform_sphere_density<R: Real>(_w: Vec3<R>) -> R {
     R::lit(1.0 / (4.0 * PI))

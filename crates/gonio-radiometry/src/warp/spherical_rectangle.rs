@@ -9,7 +9,8 @@ use gonio_num::{Real, Vec3};
 /// y/√(x² + y² + z²) is uniform.
 ///
 /// Source: Ureña, Fajardo and King 2013, "An Area-Preserving Parametrization for Spherical Rectangles". The formulas here
-/// are rearranged so that differences of nearly equal angles are never taken.
+/// are rearranged so that differences of nearly equal angles are never taken: in `f32` points are good to a few roundings of
+/// the distance, and to 6e-8 (x/z)² of it towards the horizon of a rectangle much wider than it is far.
 ///
 /// ```
 /// use gonio_num::Vec3;
@@ -115,7 +116,7 @@ impl<R: Real> SphericalRectangle<R> {
         z * ((across2 + y * y) / (across2 * (y * y + z * z))).sqrt()
     }
 
-    /// The solid angle that the rectangle subtends [sr], in [0, 2π].
+    /// The solid angle that the rectangle subtends (sr), in [0, 2π].
     #[inline(always)]
     pub fn solid_angle(&self) -> R {
         self.solid_angle
@@ -153,7 +154,7 @@ impl<R: Real> SphericalRectangle<R> {
         y / (across2 + y * y).sqrt()
     }
 
-    /// Density of the direction to [`sample`](Self::sample) [sr⁻¹]: 1/Ω for a point of the rectangle.
+    /// Density of the direction to [`sample`](Self::sample) (sr⁻¹): 1/Ω for a point of the rectangle.
     #[inline(always)]
     pub fn density(&self) -> R {
         self.solid_angle.max(R::lit(1e-37)).recip()

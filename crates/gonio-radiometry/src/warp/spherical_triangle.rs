@@ -41,7 +41,7 @@ pub fn spherical_triangle<R: Real>(u: [R; 2], triangle: [Vec3<R>; 3]) -> Vec3<R>
     b * (R::one() - below) + across * sin
 }
 
-/// Density of [`spherical_triangle`] at the unit direction `w` [sr⁻¹]: 1/Ω inside, 0 outside and for a triangle without
+/// Density of [`spherical_triangle`] at the unit direction `w` (sr⁻¹): 1/Ω inside, 0 outside and for a triangle without
 /// area. Whoever knows that w is inside needs only [`solid_angle::triangle`].
 #[inline(always)]
 pub fn spherical_triangle_density<R: Real>(w: Vec3<R>, triangle: [Vec3<R>; 3]) -> R {
