@@ -52,9 +52,9 @@ fn a_white_picture_of_any_size_gives_pi() {
         let env = Environment::from_image(white, Layout::LatLong).unwrap();
         for n in NORMALS {
             let e = env.irradiance_with_error(n);
-            // What remains is the kink where the horizon crosses from row to row, in intervals of at most π/128.
+            // Every piece is smooth and narrow: what remains is rounding.
             let off = (e.value[0] - PI).abs();
-            assert!(off < 1e-8, "{width} × {height}, {n:?}: {off:e}");
+            assert!(off < 1e-11, "{width} × {height}, {n:?}: {off:e}");
             assert!(
                 off <= 10.0 * e.error[0] + 1e-12,
                 "error estimate {:e} for {off:e}",
@@ -136,7 +136,7 @@ fn it_integrates_what_lookup_shows() {
         .unwrap()
         .rotated_deg(37.0)
         .scaled([1.0, 2.0, 0.5]);
-    let (rows, columns) = (1200, 2400);
+    let (rows, columns) = (600, 1200);
     for n in NORMALS {
         let unit = n.to_f64().normalize();
         let mut sum = [0.0; 3];
@@ -159,9 +159,9 @@ fn it_integrates_what_lookup_shows() {
         }
         let e = env.irradiance(n);
         for k in 0..3 {
-            // Midpoint rule at a hundredth of a texel: (1/100)² of the peak's share, and single-precision lookups.
+            // Midpoint rule at a fiftieth of a texel: (1/50)² of the peak's share, and single-precision lookups.
             assert!(
-                (e[k] - sum[k]).abs() < 2e-4 * sum[k],
+                (e[k] - sum[k]).abs() < 5e-4 * sum[k],
                 "{n:?}: {e:?} against {sum:?}"
             );
         }
