@@ -1,7 +1,7 @@
 //! Directions to look in: random ones, and those where implementations break.
 
-use crate::rng::Rng;
 use gonio_num::{Frame, Real, Vec3};
+use gonio_radiometry::sequence::Rng;
 use std::f64::consts::{PI, TAU};
 
 /// The unit vector at polar angle `theta` and azimuth `phi`, in radians.

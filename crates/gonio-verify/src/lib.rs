@@ -17,7 +17,6 @@ mod directions;
 mod partition;
 mod property;
 mod report;
-mod rng;
 mod search;
 mod settings;
 pub mod statistics;

@@ -228,7 +228,7 @@ fn median(points: &mut [Pilot], rect: &Rect, axis: usize) -> Option<(usize, f64)
 mod tests {
     use super::*;
     use crate::directions::{moved, spherical, uniform};
-    use crate::rng::Rng;
+    use gonio_radiometry::sequence::Rng;
 
     const RULES: Rules = Rules {
         max_points: 16,

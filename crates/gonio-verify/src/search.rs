@@ -1,8 +1,8 @@
 //! The search for the worst pair of directions.
 
 use crate::directions::{at_height, azimuth, mirror, moved, random_pair};
-use crate::rng::Rng;
 use gonio_num::Vec3;
+use gonio_radiometry::sequence::Rng;
 
 /// How many of the worst random pairs are refined.
 const STARTS: usize = 4;

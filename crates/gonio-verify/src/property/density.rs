@@ -26,7 +26,7 @@ struct Look {
     draws: u64,
     deltas: u64,
     chi_square: TestResult,
-    /// The cell that disagrees the most: centre, expected and observed counts.
+    /// The cell that disagrees the most: a direction in it, expected and observed counts.
     worst_cell: Option<(Vec3<f64>, f64, u64)>,
     samples: u64,
 }
@@ -50,7 +50,8 @@ fn look(c: &Checker, wo: Vec3<f64>, index: usize, tail: f64, harder: u64) -> Opt
     let settings = &c.settings;
     let property = Property::SampleDensity;
     let mut random = rng(c, property, &format!("pilot {index}"));
-    let three = |r: &mut crate::rng::Rng| [r.next_f64(), r.next_f64(), r.next_f64()];
+    let three =
+        |r: &mut gonio_radiometry::sequence::Rng| [r.next_f64(), r.next_f64(), r.next_f64()];
     let cells = u64::from(settings.cells);
     let pilot = cells * 16 * harder;
     let points: Vec<Pilot> = (0..pilot)
@@ -71,7 +72,8 @@ fn look(c: &Checker, wo: Vec3<f64>, index: usize, tail: f64, harder: u64) -> Opt
     let integral = integrate(
         |[z, phi]| [pdf(at_height(z, phi), wo)],
         &partition.cells,
-        1e-5,
+        // A fiftieth of the standard error of a fraction 1/2 of the draws: small beside chance, over all cells together.
+        0.01 / (settings.density_samples.max(1) as f64).sqrt(),
         settings.quadrature_evaluations * harder,
     );
 
@@ -94,23 +96,39 @@ fn look(c: &Checker, wo: Vec3<f64>, index: usize, tail: f64, harder: u64) -> Opt
     }
 
     let n = draws as f64;
-    let mut expected: Vec<f64> = integral.cells.iter().map(|e| n * e.value[0]).collect();
-    let mut slack: Vec<f64> = integral.cells.iter().map(|e| n * e.error[0]).collect();
-    let worst_cell = (0..observed.len())
+    // The cells of the quadrature are finer than a test of this many draws can use. They stand in the order of the tree, so
+    // neighbours in the list are neighbours on the sphere, and a run of them is a cell of the test.
+    let enough = (n / (2.0 * cells as f64)).max(5.0);
+    let (mut counts, mut expected, mut slack) = (vec![0u64], vec![0.0], vec![0.0]);
+    let mut centres = vec![partition.cells[0].centre()];
+    for (i, e) in integral.cells.iter().enumerate() {
+        let mut last = expected.len() - 1;
+        if expected[last] >= enough {
+            counts.push(0);
+            expected.push(0.0);
+            slack.push(0.0);
+            centres.push(partition.cells[i].centre());
+            last += 1;
+        }
+        counts[last] += observed[i];
+        expected[last] += n * e.value[0];
+        slack[last] += n * e.error[0];
+    }
+    let worst_cell = (0..counts.len())
         .map(|i| {
-            let beyond = ((observed[i] as f64 - expected[i]).abs() - slack[i]).max(0.0);
+            let beyond = ((counts[i] as f64 - expected[i]).abs() - slack[i]).max(0.0);
             (i, beyond * beyond / expected[i].max(1.0))
         })
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(i, _)| {
-            let [z, phi] = partition.cells[i].centre();
-            (at_height(z, phi), expected[i], observed[i])
+            let [z, phi] = centres[i];
+            (at_height(z, phi), expected[i], counts[i])
         });
     // The last cell is "no direction, or a delta's".
     let (value, error) = (integral.total.value[0], integral.total.error[0]);
     expected.push(n * (1.0 - value).max(0.0));
     slack.push(n * error);
-    observed.push(draws - hits);
+    counts.push(draws - hits);
     Some(Look {
         wo,
         integral: value,
@@ -119,7 +137,7 @@ fn look(c: &Checker, wo: Vec3<f64>, index: usize, tail: f64, harder: u64) -> Opt
         drawn_range: wilson_interval(hits, draws, 0.5 * tail),
         draws,
         deltas,
-        chi_square: chi_square_test_with_slack(&observed, &expected, &slack, 5.0),
+        chi_square: chi_square_test_with_slack(&counts, &expected, &slack, 5.0),
         worst_cell,
         samples: pilot + draws + integral.evaluations,
     })

@@ -116,13 +116,14 @@ impl Furnace {
 fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
     let mut random = rng(c, Property::EnergyConservation, &index.to_string());
     let draws = if c.subject.sample.is_some() {
-        c.settings.density_samples / 2
+        c.settings.density_samples / 4
     } else {
         0
     };
     let (mut continuous, mut delta) = ([Moments::new(); 3], [Moments::new(); 3]);
     let mut delta_draws = 0;
-    let mut points = Vec::with_capacity(draws as usize);
+    let pilot = c.settings.cells as usize * 16 * harder as usize;
+    let mut points = Vec::with_capacity(pilot.min(draws as usize));
     let mut largest_weight: f64 = 0.0;
     for _ in 0..draws {
         let u = [random.next_f64(), random.next_f64(), random.next_f64()];
@@ -143,7 +144,9 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
                 largest_weight = largest_weight.max(w);
             }
         }
-        if let Some(s) = s.filter(|s| !s.delta && s.wi.is_finite()) {
+        if let Some(s) = s.filter(|s| !s.delta && s.wi.is_finite())
+            && points.len() < pilot
+        {
             let brightest = s.weight.iter().fold(1.0, |a: f64, w| a.max(*w));
             points.push(Pilot {
                 at: coordinates(s.wi),
@@ -157,8 +160,8 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
         max_points: (points.len() as f64 / cells).max(8.0) as usize,
         max_mass: 4.0 / cells,
         max_solid_angle: 0.1 / harder as f64,
-        // Without samples nothing else shows where a sharp lobe stands.
-        seed_width: if draws > 0 { 0.01 } else { 1e-3 },
+        // Without samples, or with samples of something else, nothing but this shows where a sharp lobe stands.
+        seed_width: 1e-3,
     };
     let seeds = [mirror(wo), wo, Vec3::new(0.0, 0.0, 1.0)];
     let partition = Partition::new(points, &seeds, &rules, !c.settings.reflection_only);
@@ -184,7 +187,7 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
             [r, g, b, brightest, 0.0, 0.0, 0.0]
         },
         &partition.cells,
-        1e-5,
+        0.2 * c.settings.energy_bound,
         c.settings.quadrature_evaluations * harder,
     );
     let (v, e) = (integral.total.value, integral.total.error);

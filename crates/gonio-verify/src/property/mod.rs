@@ -10,8 +10,8 @@ mod signs;
 mod weight;
 
 use crate::check::Checker;
-use crate::rng::Rng;
 use crate::verdict::{Property, Verdict};
+use gonio_radiometry::sequence::Rng;
 
 /// Every property, in the order of [`Property::ALL`].
 pub(crate) fn all(c: &Checker) -> Vec<Verdict> {

@@ -206,7 +206,7 @@ pub fn kolmogorov_smirnov_uniform(numbers: &[f64]) -> TestResult {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::Rng;
+    use gonio_radiometry::sequence::Rng;
 
     #[test]
     fn chi_square_by_hand() {

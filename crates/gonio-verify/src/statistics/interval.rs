@@ -52,7 +52,7 @@ pub fn bernstein_deviation(variance: f64, range: f64, n: u64, tail: f64) -> f64 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rng::Rng;
+    use gonio_radiometry::sequence::Rng;
 
     #[test]
     fn known_quantiles() {

@@ -1,5 +1,8 @@
 //! Reflection functions that are right, and ways to break them.
 
+// Each test binary uses a part of these.
+#![allow(dead_code)]
+
 use gonio_num::{Frame, Vec3};
 use gonio_verify::{Subject, SubjectSample};
 use std::f64::consts::{PI, TAU};
@@ -189,6 +192,91 @@ impl<R: Reflection> Reflection for Varnished<R> {
             pdf: 0.5 * s.pdf,
             ..s
         })
+    }
+}
+
+/// `f` drawn by the cosine, whatever its shape: right, but with large weights where it is sharp.
+pub struct CosineDrawn<R>(pub R);
+
+impl<R: Reflection> Reflection for CosineDrawn<R> {
+    fn eval(&self, wi: V, wo: V) -> [f64; 3] {
+        self.0.eval(wi, wo)
+    }
+    fn pdf(&self, wi: V, wo: V) -> f64 {
+        Lambertian(1.0).pdf(wi, wo)
+    }
+    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
+        let s = Lambertian(1.0).sample(wo, u)?;
+        consistent(self, s.wi, wo)
+    }
+}
+
+/// A diffuse base and, drawn with probability `.0` only, a sharp lobe.
+pub struct Coated(pub f64, pub Ggx);
+
+impl Reflection for Coated {
+    fn eval(&self, wi: V, wo: V) -> [f64; 3] {
+        let (d, s) = (Lambertian(0.7).eval(wi, wo), self.1.eval(wi, wo));
+        [0, 1, 2].map(|k| d[k] + 0.04 * s[k])
+    }
+    fn pdf(&self, wi: V, wo: V) -> f64 {
+        (1.0 - self.0) * Lambertian(0.7).pdf(wi, wo) + self.0 * self.1.pdf(wi, wo)
+    }
+    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
+        let s = if u[2] < self.0 {
+            self.1.sample(wo, u)?
+        } else {
+            Lambertian(0.7).sample(wo, u)?
+        };
+        consistent(self, s.wi, wo)
+    }
+}
+
+/// Cartoon bands of equal height in z and sectors in φi − φo, with a density that is constant on each cell: edges
+/// everywhere, in the function and in the density.
+pub struct Bands;
+
+impl Bands {
+    const DENSITY: [f64; 8] = [0.5, 2.0, 0.0, 1.0, 1.5, 0.25, 2.5, 0.25];
+
+    /// Which of four bands times two halves.
+    fn cell(wi: V, wo: V) -> usize {
+        let band = ((wi.z * 4.0) as usize).min(3);
+        // At normal incidence φo is that of +x.
+        let (sin, cos) = wo.y.atan2(wo.x).sin_cos();
+        let turn = wi.x * sin - wi.y * cos;
+        2 * band + usize::from(turn > 0.0)
+    }
+}
+
+impl Reflection for Bands {
+    fn eval(&self, wi: V, wo: V) -> [f64; 3] {
+        if !above(wi, wo) {
+            return [0.0; 3];
+        }
+        [0.25 * Self::DENSITY[Self::cell(wi, wo)] / PI; 3]
+    }
+    fn pdf(&self, wi: V, wo: V) -> f64 {
+        if !above(wi, wo) {
+            return 0.0;
+        }
+        Self::DENSITY[Self::cell(wi, wo)] / TAU
+    }
+    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
+        let mut rest = u[0] * 8.0;
+        let mut cell = 0;
+        while rest >= Self::DENSITY[cell] {
+            rest -= Self::DENSITY[cell];
+            cell += 1;
+        }
+        let z = 0.25 * ((cell / 2) as f64 + u[1]);
+        let azimuth = wo.y.atan2(wo.x) + PI * u[2] * if cell % 2 == 1 { -1.0 } else { 1.0 };
+        let sin = (1.0 - z * z).sqrt();
+        consistent(
+            self,
+            V::new(sin * azimuth.cos(), sin * azimuth.sin(), z),
+            wo,
+        )
     }
 }
 
