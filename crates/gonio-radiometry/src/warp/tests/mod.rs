@@ -1,6 +1,8 @@
-//! Tests of the warps: [`smooth`] holds what every family must do, [`tables`] the tables.
+//! Tests of the warps: [`smooth`] holds what every family must do, [`scale`] tiny and huge domains, [`number_types`] lanes
+//! and derivatives, [`area`] flat shapes, [`tables`] the tables.
 
 mod area;
+mod number_types;
 mod scale;
 mod smooth;
 mod tables;
