@@ -54,9 +54,15 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Other sample counts and bounds.
+    /// Other sample counts and bounds. Counts of 0 are taken as 1.
     pub fn settings(mut self, settings: Settings) -> Self {
-        self.settings = settings;
+        self.settings = Settings {
+            pairs: settings.pairs.max(1),
+            directions: settings.directions.max(1),
+            density_samples: settings.density_samples.max(1),
+            cells: settings.cells.max(1),
+            ..settings
+        };
         self
     }
 

@@ -28,3 +28,7 @@ pub use report::Report;
 pub use settings::{Effort, Precision, Settings};
 pub use subject::{EvalFn, Expectation, PdfFn, SampleFn, Subject, SubjectSample};
 pub use verdict::{Direction, Interval, Outcome, Property, Value, Verdict, Witness};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -124,3 +124,76 @@ impl fmt::Display for Report {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::verdict::Witness;
+    use gonio_num::Vec3;
+
+    fn report() -> Report {
+        let up = Vec3::new(0.0, 0.0, 1.0);
+        let mut fails = Verdict::passing(Property::Reciprocity, 0.5, 1e-6, 10).judge(true, true);
+        fails.witness = Some(Witness::pair(Vec3::new(1.0, 0.0, 0.0), up).value("f(wi, wo)", 2.0));
+        Report {
+            subject: "example".into(),
+            effort: Effort::Quick,
+            seed_name: "seed".into(),
+            verdicts: vec![
+                Verdict::passing(Property::Finite, 0.0, 0.0, 10).judge(false, true),
+                fails,
+                Verdict::passing(Property::Isotropy, 0.3, 1e-6, 10).judge(true, false),
+                Verdict::not_applicable(Property::Linearity, "no components"),
+            ],
+        }
+    }
+
+    #[test]
+    fn only_an_undeclared_violation_fails() {
+        let mut r = report();
+        assert!(!r.passed());
+        assert_eq!(r.failures().count(), 1);
+        r.verdicts.remove(1);
+        assert!(r.passed());
+        assert_eq!(
+            r.verdict(Property::Isotropy).unwrap().outcome,
+            Outcome::Declared
+        );
+        assert!(r.verdict(Property::Reciprocity).is_none());
+    }
+
+    #[test]
+    fn the_table_names_each_outcome_and_the_witness() {
+        let text = report().to_string();
+        for part in [
+            "✓ pass",
+            "✗ FAIL",
+            "! declared",
+            "- n/a",
+            "worst for reciprocity:",
+            "θ 90.0000° φ 0.0000°",
+            "f(wi, wo) = 2",
+            "FAIL: 1 passed, 1 failed, 1 declared, 1 not applicable",
+        ] {
+            assert!(text.contains(part), "{part}\n{text}");
+        }
+        let column = |line: &str| line.find("(bound");
+        let lines: Vec<&str> = text.lines().filter(|l| l.contains("(bound")).collect();
+        assert_eq!(lines.len(), 4);
+        // Counted in characters, the marks being longer in bytes.
+        let at = |l: &str| column(l).map(|b| l[..b].chars().count());
+        assert!(lines.iter().all(|l| at(l) == at(lines[0])), "{text}");
+    }
+
+    #[test]
+    fn json_has_names_and_null_for_what_was_not_measured() {
+        let json: serde_json::Value = serde_json::to_value(report()).unwrap();
+        assert_eq!(json["effort"], "quick");
+        let verdicts = &json["verdicts"];
+        assert_eq!(verdicts[1]["property"], "reciprocity");
+        assert_eq!(verdicts[1]["outcome"], "fail");
+        assert_eq!(verdicts[1]["witness"]["wo"]["theta_deg"], 0.0);
+        assert_eq!(verdicts[3]["outcome"], "not_applicable");
+        assert!(verdicts[3]["figure"].is_null());
+    }
+}

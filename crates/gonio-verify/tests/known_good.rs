@@ -159,6 +159,39 @@ fn the_same_seed_gives_the_same_report() {
 }
 
 #[test]
+fn a_leaf_may_transmit() {
+    // Half of the light to either side, from either side.
+    let eval = |_: V, _: V| [0.5 / std::f64::consts::PI; 3];
+    let pdf = |wi: V, _: V| 0.5 * wi.z.abs() / std::f64::consts::PI;
+    let sample = |_: V, u: [f64; 3]| {
+        let up = V::new(0.0, 0.0, 1.0);
+        let mut s = Lambertian(1.0).sample(up, u)?;
+        s.wi.z *= if u[2] < 0.5 { 1.0 } else { -1.0 };
+        s.pdf *= 0.5;
+        s.weight = [1.0; 3];
+        Some(s)
+    };
+    let subject = gonio_verify::Subject::new("leaf", &eval)
+        .with_pdf(&pdf)
+        .with_sample(&sample);
+    let run = |reflection_only| {
+        Checker::new(&subject, &Expectation::PHYSICAL, Effort::Quick)
+            .settings(Settings {
+                reflection_only,
+                ..Settings::new(Effort::Quick)
+            })
+            .run("leaf")
+    };
+    let report = run(false);
+    assert!(report.passed(), "{report}");
+    assert_eq!(outcome(&report, Property::Horizon), Outcome::NotApplicable);
+    let energy = report.verdict(Property::EnergyConservation).unwrap();
+    assert!((energy.figure - 1.0).abs() < 1e-4, "{report}");
+    // The control: a surface that claims only to reflect.
+    assert_eq!(outcome(&run(true), Property::Horizon), Outcome::Fail);
+}
+
+#[test]
 fn components_add_up() {
     let (diffuse, lobe) = (Lambertian(0.3), Phong(20.0));
     let d = |wi: V, wo: V| diffuse.eval(wi, wo);

@@ -39,7 +39,7 @@ pub(super) struct Furnace {
 /// Outgoing directions from the normal to grazing, denser towards grazing where energy goes wrong, spiralling in azimuth by
 /// the golden angle so that an anisotropic function is seen from all sides.
 pub(super) fn outgoing(count: u32, steepest_deg: f64) -> Vec<Vec3<f64>> {
-    (0..count)
+    (0..count.max(1))
         .map(|k| {
             let t = f64::from(k) / f64::from(count.max(2) - 1);
             let theta = steepest_deg * t * (1.4 - 0.4 * t);

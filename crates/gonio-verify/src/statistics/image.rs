@@ -26,7 +26,7 @@ impl ImageZTest {
     }
 }
 
-/// A two-sided z-test of each number (pixel and channel) of `a` against `b`.
+/// A two-sided z-test of each number (pixel and channel) of `a` against `b`; of pixels `[[f32; 3]]` give `as_flattened()`.
 ///
 /// - `variance_a`, `variance_b`: the variances of these estimates (of the mean, not of one sample); zeros for an exact
 ///   reference
