@@ -31,14 +31,16 @@
 //! assert_eq!(Layers::read_exr(&folder.join("layers.exr"))?.metadata("samples"), Some("256"));
 //!
 //! ramp.write_png(&folder.join("ramp.png"), ToneMap::PbrNeutral, -1.0)?;
+//! let difference = gonio_image::difference::compare(&ramp, &ramp)?;
+//! assert_eq!(difference.flip_mean, 0.0);
 //! std::fs::remove_dir_all(&folder)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod atomic;
-
+pub mod colormap;
 mod contain;
-
+pub mod difference;
 mod error;
 mod format;
 mod image;

@@ -1,15 +1,17 @@
-//! OpenEXR, by the `exr` crate.
+//! OpenEXR, by the `exr` crate: reading here, writing in [`write`].
+
+mod write;
+
+pub(crate) use write::encode;
 
 use crate::contain::contain;
 use crate::layers::Chromaticities;
-use crate::{
-    Channel, ChannelData, Compression, Image, ImageError, Layers, Limits, RawData, RawImage,
-};
-use exr::image::{AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Layer};
+use crate::{Channel, ChannelData, Image, ImageError, Layers, Limits, RawData, RawImage};
+use exr::image::FlatSamples;
 use exr::math::Vec2;
-use exr::meta::attribute::{self, AttributeValue, LineOrder, SampleType, Text};
-use exr::meta::header::{Header, LayerAttributes, standard_names};
-use exr::prelude::{ReadChannels, ReadLayers, WritableImage};
+use exr::meta::attribute::{AttributeValue, SampleType, Text};
+use exr::meta::header::{Header, standard_names};
+use exr::prelude::{ReadChannels, ReadLayers};
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
@@ -189,6 +191,12 @@ fn check_headers(
             };
         }
     }
+    for header in headers {
+        // A decoder's buffer holds a whole block, and a block may be larger than the picture: 256 scan lines, or any tile.
+        let block = header.max_block_pixel_size();
+        let pixels = (block.x() as u64).saturating_mul(block.y() as u64);
+        limits.check_bytes(file, pixels.saturating_mul(bytes_per_pixel))?;
+    }
     // Shown as three floats in the end.
     limits.check(
         file,
@@ -233,7 +241,7 @@ fn strings(headers: &[Header]) -> Vec<(String, String)> {
     all.into_iter().collect()
 }
 
-/// Reserved names of strings.
+/// Reserved names of strings; `write` knows where the `exr` crate keeps each.
 const TEXTS: [&[u8]; 8] = [
     standard_names::OWNER,
     standard_names::COMMENTS,
@@ -244,24 +252,6 @@ const TEXTS: [&[u8]; 8] = [
     standard_names::RENDERING_TRANSFORM,
     standard_names::LOOK_MOD_TRANSFORM,
 ];
-
-/// Where the `exr` crate keeps a reserved string.
-fn reserved_text<'a>(
-    attributes: &'a mut LayerAttributes,
-    name: &[u8],
-) -> Option<&'a mut Option<Text>> {
-    Some(match name {
-        standard_names::OWNER => &mut attributes.owner,
-        standard_names::COMMENTS => &mut attributes.comments,
-        standard_names::CAPTURE_DATE => &mut attributes.capture_date,
-        standard_names::SOFTWARE => &mut attributes.software_name,
-        standard_names::VIEW => &mut attributes.view_name,
-        standard_names::WRAP_MODES => &mut attributes.wrap_mode_name,
-        standard_names::RENDERING_TRANSFORM => &mut attributes.rendering_transform_name,
-        standard_names::LOOK_MOD_TRANSFORM => &mut attributes.look_modification_transform_name,
-        _ => return None,
-    })
-}
 
 fn string(text: &Text) -> String {
     utf8(text.as_slice())
@@ -284,133 +274,6 @@ fn translate(file: &str, place: &str, error: exr::error::Error) -> ImageError {
         Error::Aborted => "an interruption".into(),
     };
     ImageError::format(file, place, found, "a valid OpenEXR file")
-}
-
-/// The bytes of an EXR of one part.
-pub(crate) fn encode(
-    file: &str,
-    layers: &Layers,
-    compression: Compression,
-) -> Result<Vec<u8>, ImageError> {
-    let refuse = |message: String| ImageError::parameter(format!("{file}: {message}"));
-    let (width, height) = (layers.width, layers.height);
-    if width == 0 || height == 0 || layers.channels.is_empty() {
-        return Err(refuse(format!(
-            "a picture of {width} × {height} pixels and {} channels cannot be written",
-            layers.channels.len()
-        )));
-    }
-    if i32::try_from(width).is_err() || i32::try_from(height).is_err() {
-        return Err(refuse(format!("{width} × {height} does not fit an EXR")));
-    }
-    let name_of = |what: &str, name: &str| {
-        let fits = (1..=255).contains(&name.len()) && !name.contains('\0');
-        if !fits {
-            return Err(refuse(format!(
-                "{what} names are 1 to 255 bytes without NUL, not {name:?}"
-            )));
-        }
-        Ok(Text::from_slice_unchecked(name.as_bytes()))
-    };
-    let mut list: Vec<AnyChannel<FlatSamples>> = Vec::new();
-    for channel in &layers.channels {
-        if channel.samples.len() != width * height {
-            return Err(refuse(format!(
-                "channel `{}` has {} samples, the picture {width} × {height} pixels",
-                channel.name,
-                channel.samples.len()
-            )));
-        }
-        let name = name_of("channel", &channel.name)?;
-        if list.iter().any(|c| c.name == name) {
-            return Err(refuse(format!("two channels are named `{}`", channel.name)));
-        }
-        let samples = match &channel.samples {
-            ChannelData::Half(s) => FlatSamples::F16(s.clone()),
-            ChannelData::Float(s) => FlatSamples::F32(s.clone()),
-            ChannelData::Uint(s) => FlatSamples::U32(s.clone()),
-        };
-        list.push(AnyChannel::new(name, samples));
-    }
-    let mut attributes = LayerAttributes::default();
-    for (name, value) in &layers.metadata {
-        let key = name_of("attribute", name)?;
-        let text = Text::from_slice_unchecked(value.as_bytes());
-        let twice = if let Some(place) = reserved_text(&mut attributes, name.as_bytes()) {
-            place.replace(text).is_some()
-        } else if standard_names::ALL.contains(&name.as_bytes()) {
-            return Err(refuse(format!(
-                "OpenEXR reserves the attribute name `{name}`, and not for a string"
-            )));
-        } else {
-            attributes
-                .other
-                .insert(key, AttributeValue::Text(text))
-                .is_some()
-        };
-        if twice {
-            return Err(refuse(format!("two attributes are named `{name}`")));
-        }
-    }
-    let encoding = Encoding {
-        compression: match compression {
-            Compression::None => attribute::Compression::Uncompressed,
-            Compression::Rle => attribute::Compression::RLE,
-            Compression::Zip => attribute::Compression::ZIP16,
-            Compression::Piz => attribute::Compression::PIZ,
-        },
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-    };
-    let channels = AnyChannels::sort(list.into_iter().collect());
-    let layer = Layer::new((width, height), attributes, encoding, channels);
-    let mut image = exr::image::Image::from_layer(layer);
-    image.attributes.chromaticities = layers.chromaticities.map(|c| {
-        let point = |[x, y]: [f32; 2]| Vec2(x, y);
-        attribute::Chromaticities {
-            red: point(c.red),
-            green: point(c.green),
-            blue: point(c.blue),
-            white: point(c.white),
-        }
-    });
-    let mut bytes = Vec::new();
-    image
-        .write()
-        .non_parallel()
-        .to_buffered(Cursor::new(&mut bytes))
-        .map_err(|e| refuse(e.to_string()))?;
-    sort_attributes(&mut bytes);
-    Ok(bytes)
-}
-
-/// Sorts the header's attributes by name. The encoder keeps them in a hash map, whose order changes from run to run: files
-/// of the same picture would differ. Sorted, the header is as long as it was, so offsets stay right.
-fn sort_attributes(bytes: &mut [u8]) {
-    const START: usize = 8;
-    let mut records: Vec<&[u8]> = Vec::new();
-    let mut at = START;
-    // Each record: name, NUL, type, NUL, length (32 bits), value. An empty name ends the header.
-    while bytes[at] != 0 {
-        let after_nul = |from: usize| {
-            from + 1
-                + bytes[from..]
-                    .iter()
-                    .position(|&b| b == 0)
-                    .expect("invariant: the encoder ends names by NUL")
-        };
-        let length_at = after_nul(after_nul(at));
-        let length = bytes[length_at..]
-            .first_chunk()
-            .map(|&b| i32::from_le_bytes(b) as usize)
-            .expect("invariant: the encoder writes a length after the type");
-        let end = length_at + 4 + length;
-        records.push(&bytes[at..end]);
-        at = end;
-    }
-    records.sort_unstable();
-    let sorted = records.concat();
-    bytes[START..at].copy_from_slice(&sorted);
 }
 
 #[cfg(test)]

@@ -250,11 +250,9 @@ fn to_rgbe(rgb: [f32; 3]) -> Result<[u8; 4], usize> {
     if f64::from(largest) * power_of_two(8 - exponent) >= 255.5 {
         exponent += 1;
     }
-    if exponent + 128 < 1 {
-        return Ok([0; 4]);
-    }
-    // The largest exponent is 255, of values below 2^127: half of f32's range. Above, the largest code is the nearest.
-    let exponent = exponent.min(127);
+    // The largest exponent is 255, of values below 2^127: half of f32's range. Above, the largest code is the nearest. The
+    // smallest is 1: darker values have fewer bits.
+    let exponent = exponent.clamp(-127, 127);
     let scale = power_of_two(8 - exponent);
     let [r, g, b] = rgb.map(|v| (f64::from(v) * scale + 0.5).min(255.0) as u8);
     Ok([r, g, b, (exponent + 128) as u8])

@@ -120,15 +120,11 @@ pub(super) fn encode(line: &[[u8; 4]], out: &mut Vec<u8>) {
     }
 }
 
-/// In a flat scan line the pixel (1, 1, 1, n) means a run. The same colour with mantissas 2 and the exponent one lower says
-/// it too, exactly, but for exponent 0 (black) and 1 (which becomes black: the smallest value there is, 2⁻¹³⁵).
+/// In a flat scan line the pixel (1, 1, 1, n) means a run. The largest mantissa of a pixel is at least 128 but at the smallest
+/// exponent, so the only such pixel is (1, 1, 1, 1), the grey 2⁻¹³⁵: the darkest there is, written as black.
 /// (2, 2, h, l) with h < 128 means new run lengths only where those are defined, and there a scan line is never flat.
 fn not_a_run(pixel: [u8; 4]) -> [u8; 4] {
-    match pixel {
-        [1, 1, 1, 0] => [0; 4],
-        [1, 1, 1, e] => [2, 2, 2, e - 1],
-        other => other,
-    }
+    if pixel[..3] == [1; 3] { [0; 4] } else { pixel }
 }
 
 fn encode_component(samples: &[u8], out: &mut Vec<u8>) {
