@@ -1,15 +1,9 @@
 //! Directions to look in: random ones, and those where implementations break.
 
 use gonio_num::{Frame, Real, Vec3};
+pub(crate) use gonio_radiometry::direction::spherical_direction as spherical;
 use gonio_radiometry::sequence::Rng;
 use std::f64::consts::{PI, TAU};
-
-/// The unit vector at polar angle `theta` and azimuth `phi`, in radians.
-pub(crate) fn spherical(theta: f64, phi: f64) -> Vec3<f64> {
-    let (sin, cos) = Real::sin_cos(theta);
-    let (sin_phi, cos_phi) = Real::sin_cos(phi);
-    Vec3::new(sin * cos_phi, sin * sin_phi, cos)
-}
 
 /// The unit vector of height `z` in [−1, 1] and azimuth `phi`: equal areas in (z, φ) are equal solid angles.
 pub(crate) fn at_height(z: f64, phi: f64) -> Vec3<f64> {
