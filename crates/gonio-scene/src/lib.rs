@@ -2,12 +2,23 @@
 //!
 //! This crate is floor 4. It knows where surfaces are and what they are made of; it knows nothing of integrators.
 
+pub mod camera;
 mod error;
 pub mod geometry;
+pub mod light;
+pub mod material;
 pub mod mesh;
 mod ray;
+mod reader;
+mod scene;
+pub mod texture;
 
+pub use camera::{Camera, Projection};
 pub use error::SceneError;
 pub use geometry::{Aabb, AreaSample, Geometry, Instance, Shape, SurfacePoint};
+pub use light::{Light, LightRef, LightSample, LightTarget, Lights, SpotCone};
+pub use material::{Material, Shading};
 pub use mesh::TriangleMesh;
 pub use ray::{Hit, Ray};
+pub use scene::{LoadOptions, Scene, SceneBuilder};
+pub use texture::Texture;

@@ -78,7 +78,11 @@ fn stretch(placed: &Placed, n: Vec3<f64>) -> f64 {
 /// Gauss–Chebyshev in φ and midpoint in cosθ with 256 × 512 points: relative error below 1e-4 for axes of 1 : 100.
 fn ellipsoid_area(placed: &Placed) -> f64 {
     let m = &placed.to_world;
-    let (x, y, z) = (m.x.length_squared(), m.y.length_squared(), m.z.length_squared());
+    let (x, y, z) = (
+        m.x.length_squared(),
+        m.y.length_squared(),
+        m.z.length_squared(),
+    );
     let largest = x.max(y).max(z);
     let even = (x - y).abs().max((y - z).abs()) <= 1e-6 * largest;
     let square = m.x.dot(m.y).abs() + m.y.dot(m.z).abs() + m.z.dot(m.x).abs() <= 1e-6 * largest;
@@ -145,6 +149,37 @@ impl Geometry {
     /// # Panics
     /// If there is no such instance.
     pub fn sample_area(&self, instance: u32, u: [f32; 2], u_select: f32) -> AreaSample {
+        match self.sample_surface(instance, u, u_select) {
+            Some((point, pdf_area)) => AreaSample {
+                p: point.p,
+                ng: point.ng,
+                pdf_area,
+                error: point.error,
+                uv: point.uv,
+                primitive: point.primitive,
+            },
+            None => AreaSample {
+                p: self.placed[instance as usize].to_world.origin.to_f32(),
+                ng: Vec3::new(0.0, 0.0, 1.0),
+                pdf_area: 0.0,
+                error: 0.0,
+                uv: [0.0; 2],
+                primitive: 0,
+            },
+        }
+    }
+
+    /// As [`Geometry::sample_area`], with all that is known of the surface there, and the density over area \[1/m²\]; nothing
+    /// if the surface has no area.
+    ///
+    /// # Panics
+    /// If there is no such instance.
+    pub fn sample_surface(
+        &self,
+        instance: u32,
+        u: [f32; 2],
+        u_select: f32,
+    ) -> Option<(SurfacePoint, f32)> {
         let placed = &self.placed[instance as usize];
         let table = self.area_table(instance);
         let u = u.map(f64::from);
@@ -155,14 +190,7 @@ impl Geometry {
                 let chosen = f64::from(u_select) * table.total;
                 let i = table.running.partition_point(|&sum| sum <= chosen);
                 if table.total <= 0.0 || i >= table.running.len() {
-                    return AreaSample {
-                        p: placed.to_world.origin.to_f32(),
-                        ng: Vec3::new(0.0, 0.0, 1.0),
-                        pdf_area: 0.0,
-                        error: 0.0,
-                        uv: [0.0; 2],
-                        primitive: 0,
-                    };
+                    return None;
                 }
                 primitive = i as u32;
                 let (a, b) = uniform_triangle(u);
@@ -189,15 +217,7 @@ impl Geometry {
             u: 0.0,
             v: 0.0,
         };
-        let point = placed.to_surface(&local, &hit);
-        AreaSample {
-            p: point.p,
-            ng: point.ng,
-            pdf_area: pdf as f32,
-            error: point.error,
-            uv: point.uv,
-            primitive,
-        }
+        Some((placed.to_surface(&local, &hit), pdf as f32))
     }
 
     /// The density over area \[1/m²\] with which [`Geometry::sample_area`] chooses a surface's point.

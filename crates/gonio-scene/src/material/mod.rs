@@ -1,0 +1,283 @@
+//! [`Material`]: how a surface reflects, shines and hides what is behind it, and how textures vary that over it.
+
+mod input;
+mod shading;
+
+pub use input::{Channels, TextureInput};
+pub use shading::Shading;
+
+use crate::{SceneError, SurfacePoint, Texture};
+use gonio_brdf::{Brdf, Kind, Model, ModelSpec, ParameterSlot, Value};
+use gonio_num::Vec3;
+use gonio_radiometry::sequence::{SampleStream, SamplerKind};
+
+/// A surface's reflection function with the textures that drive its parameters, and its emission, opacity and normal map.
+///
+/// Both sides of a surface reflect, whatever [`Material::double_sided`] says: an open mesh seen from behind is not black, and
+/// no light leaks through it. Single-sided materials *shine* on their front alone.
+#[derive(Debug, Clone)]
+pub struct Material {
+    /// Its name in the scene, for replacing it and for messages.
+    pub name: String,
+    /// Bends the shading normal.
+    pub normal_map: Option<NormalMap>,
+    /// What it emits.
+    pub emission: Emission,
+    /// What it lets through.
+    pub opacity: Opacity,
+    /// Whether the back shines as the front does.
+    pub double_sided: bool,
+    spec: ModelSpec,
+    model: Model<f32, 3>,
+    bindings: Vec<Binding>,
+    albedo: [f32; 3],
+    /// The binding whose value is the albedo, if one drives the model's colour.
+    albedo_binding: Option<usize>,
+}
+
+/// A tangent-space normal map: red, green and blue are x, y and z of the normal, each mapped from \[0, 1] to \[−1, 1].
+#[derive(Debug, Clone, PartialEq)]
+pub struct NormalMap {
+    /// The map, linear. +y points up in the picture.
+    pub texture: Texture,
+    /// Factor on x and y.
+    pub scale: f32,
+}
+
+/// Emitted radiance \[W m⁻² sr⁻¹], the same in all directions of the side that shines.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Emission {
+    /// Radiance, or factor on the texture.
+    pub radiance: [f32; 3],
+    /// Multiplies the radiance.
+    pub texture: Option<Texture>,
+    /// Whether the vertex colours multiply the radiance.
+    pub vertex_colour: bool,
+}
+
+/// How much a surface hides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Opacity {
+    /// What is done with alpha.
+    pub mode: AlphaMode,
+    /// Factor on alpha, in \[0, 1].
+    pub factor: f32,
+    /// Its alpha channel multiplies alpha.
+    pub texture: Option<TextureInput>,
+    /// Whether the alpha of the vertex colours multiplies alpha.
+    pub vertex_alpha: bool,
+}
+
+/// What is done with alpha, as in glTF.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum AlphaMode {
+    /// Nothing: the surface hides all.
+    #[default]
+    Opaque,
+    /// Hides all where alpha ≥ the cutoff, nothing elsewhere.
+    Mask(f32),
+    /// Hides the share alpha.
+    Blend,
+}
+
+/// What drives one parameter of the model: `base` × texture × vertex colour.
+#[derive(Debug, Clone)]
+struct Binding {
+    parameter: &'static str,
+    slot: ParameterSlot,
+    base: [f32; 3],
+    texture: Option<TextureInput>,
+    vertex_colour: bool,
+}
+
+impl Material {
+    /// A material that reflects as `spec` says and nothing more.
+    ///
+    /// # Errors
+    /// [`SceneError::Brdf`] if the model can't be built.
+    pub fn new(name: impl Into<String>, spec: &ModelSpec) -> Result<Self, SceneError> {
+        let model = spec.build()?;
+        let albedo = normal_albedo(&model);
+        Ok(Self {
+            name: name.into(),
+            normal_map: None,
+            emission: Emission::default(),
+            opacity: Opacity::default(),
+            double_sided: false,
+            spec: spec.clone(),
+            model,
+            bindings: Vec::new(),
+            albedo,
+            albedo_binding: None,
+        })
+    }
+
+    /// The description of the model, without its textures.
+    pub fn spec(&self) -> &ModelSpec {
+        &self.spec
+    }
+
+    /// Reflects as `spec` says from now on. Textures that drove the old model's parameters are dropped; emission, opacity,
+    /// normal map and name stay.
+    ///
+    /// # Errors
+    /// [`SceneError::Brdf`] if the model can't be built; the material is then unchanged.
+    pub fn replace_model(&mut self, spec: &ModelSpec) -> Result<(), SceneError> {
+        self.model = spec.build()?;
+        self.spec = spec.clone();
+        self.bindings.clear();
+        self.albedo = normal_albedo(&self.model);
+        self.albedo_binding = None;
+        Ok(())
+    }
+
+    /// Lets a texture drive a parameter: its value is the description's × the texture's. So the description's value is the
+    /// factor; where the description leaves the parameter out, the factor is 1.
+    ///
+    /// # Errors
+    /// [`SceneError::Brdf`] if the model has no such parameter, or it is no number or colour.
+    pub fn bind_texture(&mut self, parameter: &str, input: TextureInput) -> Result<(), SceneError> {
+        let binding = self.binding(parameter)?;
+        binding.texture = Some(input);
+        Ok(())
+    }
+
+    /// Lets the vertex colours multiply a parameter.
+    ///
+    /// # Errors
+    /// As [`Material::bind_texture`].
+    pub fn bind_vertex_colour(&mut self, parameter: &str) -> Result<(), SceneError> {
+        let binding = self.binding(parameter)?;
+        binding.vertex_colour = true;
+        Ok(())
+    }
+
+    /// The names of the parameters that textures or vertex colours drive.
+    pub fn driven_parameters(&self) -> impl Iterator<Item = &'static str> + '_ {
+        self.bindings.iter().map(|b| b.parameter)
+    }
+
+    fn binding(&mut self, parameter: &str) -> Result<&mut Binding, SceneError> {
+        if let Some(at) = self.bindings.iter().position(|b| b.parameter == parameter) {
+            return Ok(&mut self.bindings[at]);
+        }
+        let info = self.spec.info()?;
+        let slot = ParameterSlot::find(info.name, parameter)?;
+        let declared = info.parameters.iter().find(|p| p.name == parameter);
+        let declared = declared.expect("invariant: a slot is found for declared parameters only");
+        let base = match self.spec.values.get(parameter) {
+            Some(Value::Number(x)) => [*x as f32; 3],
+            Some(Value::Colour(c)) => c.map(|x| x as f32),
+            _ => [1.0; 3],
+        };
+        if matches!(declared.kind, Kind::Colour { .. }) && self.albedo_binding.is_none() {
+            self.albedo_binding = Some(self.bindings.len());
+        }
+        self.bindings.push(Binding {
+            parameter: declared.name,
+            slot,
+            base,
+            texture: None,
+            vertex_colour: false,
+        });
+        Ok(self
+            .bindings
+            .last_mut()
+            .expect("invariant: one was just pushed"))
+    }
+
+    /// The radiance \[W m⁻² sr⁻¹] that the surface emits towards `wo` (world, unit), before opacity: zero behind a
+    /// single-sided surface, whose front is where the geometric normal points.
+    pub fn emitted(&self, point: &SurfacePoint, wo: Vec3<f32>) -> [f32; 3] {
+        if !self.emission.is_lit() || !(self.double_sided || point.ng.dot(wo) > 0.0) {
+            return [0.0; 3];
+        }
+        self.emission.at(point)
+    }
+}
+
+impl Emission {
+    /// Whether anything is emitted anywhere.
+    pub fn is_lit(&self) -> bool {
+        self.radiance.iter().any(|&r| r > 0.0)
+    }
+
+    /// The radiance \[W m⁻² sr⁻¹] at a point of a surface.
+    pub fn at(&self, point: &SurfacePoint) -> [f32; 3] {
+        let mut radiance = self.radiance;
+        if let Some(texture) = &self.texture {
+            let t = texture.lookup(point.uv, point.uv1);
+            radiance = std::array::from_fn(|k| radiance[k] * t[k].max(0.0));
+        }
+        if self.vertex_colour {
+            radiance = std::array::from_fn(|k| radiance[k] * point.colour[k].max(0.0));
+        }
+        radiance
+    }
+
+    /// The radiance's mean over the texture.
+    pub fn mean(&self) -> [f32; 3] {
+        match &self.texture {
+            None => self.radiance,
+            Some(texture) => {
+                let t = texture.mean();
+                std::array::from_fn(|k| self.radiance[k] * t[k].max(0.0) as f32)
+            }
+        }
+    }
+}
+
+impl Default for Opacity {
+    fn default() -> Self {
+        Self {
+            mode: AlphaMode::Opaque,
+            factor: 1.0,
+            texture: None,
+            vertex_alpha: false,
+        }
+    }
+}
+
+impl Opacity {
+    /// Whether some of it lets light through.
+    pub fn is_opaque(&self) -> bool {
+        self.mode == AlphaMode::Opaque
+    }
+
+    /// The share of light that is stopped, in \[0, 1], at a point of a surface.
+    pub fn at(&self, point: &SurfacePoint) -> f32 {
+        if self.is_opaque() {
+            return 1.0;
+        }
+        let mut alpha = self.factor;
+        if let Some(input) = &self.texture {
+            alpha *= input.value(point.uv, point.uv1)[0];
+        }
+        if self.vertex_alpha {
+            alpha *= point.colour[3];
+        }
+        match self.mode {
+            AlphaMode::Mask(cutoff) => f32::from(u8::from(alpha >= cutoff)),
+            AlphaMode::Blend | AlphaMode::Opaque => alpha.clamp(0.0, 1.0),
+        }
+    }
+}
+
+/// The share of light that comes back when seen along the normal: the mean weight of 64 samples, within \[0, 1].
+fn normal_albedo(model: &Model<f32, 3>) -> [f32; 3] {
+    const SAMPLES: u32 = 64;
+    let wo = Vec3::new(0.0, 0.0, 1.0);
+    let mut sum = [0.0_f64; 3];
+    for i in 0..SAMPLES {
+        let sample = model.sample(wo, SampleStream::new(SamplerKind::Sobol, 0, 0, i).next_3d());
+        if sample.pdf > 0.0 {
+            for (s, w) in sum.iter_mut().zip(sample.weight) {
+                *s += f64::from(w);
+            }
+        }
+    }
+    sum.map(|s| ((s / f64::from(SAMPLES)) as f32).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests;

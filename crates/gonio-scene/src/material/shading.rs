@@ -1,0 +1,143 @@
+//! [`Shading`]: a material at a point of a surface, ready to reflect.
+
+use super::{Binding, Material};
+use crate::SurfacePoint;
+use gonio_brdf::Model;
+use gonio_num::{Frame, Vec3};
+use std::borrow::Cow;
+
+/// Smallest cosine between the shading normal and the direction to the viewer.
+const MIN_COS: f32 = 1e-3;
+
+/// What a surface is at one point, as one viewer sees it.
+#[derive(Debug, Clone)]
+pub struct Shading<'a> {
+    /// Local coordinates of the reflection function: normal +z on the viewer's side, +x along the tangent.
+    pub frame: Frame<f32>,
+    /// The reflection function, its textured parameters set.
+    pub model: Cow<'a, Model<f32, 3>>,
+    /// Share of light that the surface stops, in \[0, 1]: 1 is opaque.
+    pub alpha: f32,
+    /// About the share of light reflected, for an image of the colours alone.
+    pub albedo: [f32; 3],
+}
+
+impl Material {
+    /// The material at `point`, seen from the unit direction `wo` (world, leaving the surface).
+    ///
+    /// The frame's normal is the shading normal, bent by the normal map, on the side of the geometric normal that faces `wo`.
+    /// Interpolated or mapped normals may still face away from `wo`, where a reflection function has no value and the point
+    /// would be black. So a normal n with n·wo < c = 0.001 becomes n + (c − n·wo) wo, normalised: its part across wo stays, its
+    /// part along wo is raised to c. The result is continuous, always in wo's hemisphere and never NaN.
+    ///
+    /// Nothing is allocated unless the model itself holds allocated parts (a sum) *and* is textured.
+    pub fn shade(&self, point: &SurfacePoint, wo: Vec3<f32>) -> Shading<'_> {
+        let normal = facing(self.bent_normal(point), point.ng, wo);
+        let frame = Frame::from_normal_tangent(normal, point.tangent);
+        let alpha = self.opacity.at(point);
+        let mut albedo = self.albedo;
+        let model = if self.bindings.is_empty() {
+            Cow::Borrowed(&self.model)
+        } else {
+            let mut model = self.model.clone();
+            for (index, binding) in self.bindings.iter().enumerate() {
+                let value = binding.value(point);
+                model.set_parameter(binding.slot, value);
+                if self.albedo_binding == Some(index) {
+                    albedo = value;
+                }
+            }
+            Cow::Owned(model)
+        };
+        Shading {
+            frame,
+            model,
+            alpha,
+            albedo,
+        }
+    }
+
+    /// The shading normal with the normal map applied, on the front side.
+    fn bent_normal(&self, point: &SurfacePoint) -> Vec3<f32> {
+        let Some(map) = &self.normal_map else {
+            return point.ns;
+        };
+        let [r, g, b, _] = map.texture.lookup(point.uv, point.uv1);
+        let (x, y, z) = (
+            (2.0 * r - 1.0) * map.scale,
+            (2.0 * g - 1.0) * map.scale,
+            2.0 * b - 1.0,
+        );
+        let frame = Frame::from_normal_tangent(point.ns, point.tangent);
+        let bent = frame.s * x + frame.t * (y * point.bitangent_sign) + frame.n * z;
+        let length = bent.length();
+        if length > 1e-6 && length.is_finite() {
+            bent / length
+        } else {
+            point.ns
+        }
+    }
+}
+
+impl Binding {
+    /// The parameter's value at a point; the model limits it to the parameter's range.
+    fn value(&self, point: &SurfacePoint) -> [f32; 3] {
+        let mut value = self.base;
+        if let Some(input) = &self.texture {
+            let t = input.value(point.uv, point.uv1);
+            value = std::array::from_fn(|k| value[k] * t[k]);
+        }
+        if self.vertex_colour {
+            value = std::array::from_fn(|k| value[k] * point.colour[k]);
+        }
+        value
+    }
+}
+
+/// The front-side normal `n` of a surface with geometric normal `ng`, on the side of `wo` and in its hemisphere.
+fn facing(n: Vec3<f32>, ng: Vec3<f32>, wo: Vec3<f32>) -> Vec3<f32> {
+    let n = if ng.dot(wo) < 0.0 { -n } else { n };
+    let cos = n.dot(wo);
+    if cos >= MIN_COS {
+        n
+    } else {
+        (n + wo * (MIN_COS - cos)).normalize()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn unit(v: [f32; 3]) -> Option<Vec3<f32>> {
+        let v = Vec3::from(v);
+        (v.length() > 1e-3).then(|| v.normalize())
+    }
+
+    proptest! {
+        #[test]
+        fn the_normal_always_faces_the_viewer(
+            n in prop::array::uniform3(-1.0_f32..1.0),
+            ng in prop::array::uniform3(-1.0_f32..1.0),
+            wo in prop::array::uniform3(-1.0_f32..1.0),
+        ) {
+            let (Some(n), Some(ng), Some(wo)) = (unit(n), unit(ng), unit(wo)) else { return Ok(()) };
+            let f = facing(n, ng, wo);
+            prop_assert!((f.length() - 1.0).abs() < 1e-5);
+            // After normalising, the part along wo is c/√(1 + c²) to c.
+            prop_assert!(f.dot(wo) > 0.9 * MIN_COS, "{}", f.dot(wo));
+            let side = if ng.dot(wo) < 0.0 { -n } else { n };
+            if side.dot(wo) >= MIN_COS {
+                prop_assert_eq!(f, side);
+            }
+        }
+    }
+
+    /// Exactly away from the viewer is the worst case: the normal becomes the viewer's direction.
+    #[test]
+    fn a_normal_straight_away_is_turned_round() {
+        let wo = Vec3::new(0.0, 0.0, 1.0);
+        assert_eq!(facing(-wo, wo, wo), wo);
+    }
+}

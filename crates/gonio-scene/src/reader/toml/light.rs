@@ -1,0 +1,142 @@
+//! `[[light]]` and `[environment]`.
+
+use super::section::{Section, Value};
+use super::source::Source;
+use super::view::refuse;
+use crate::SceneError;
+use crate::light::{Light, SpotCone};
+use crate::scene::SceneBuilder;
+use gonio_env::{Environment, Layout};
+use gonio_num::Vec3;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Point,
+    Directional,
+    Spot,
+}
+
+/// `[[light]]`.
+pub(super) fn read(
+    builder: &mut SceneBuilder,
+    source: &Source,
+    value: &Value,
+) -> Result<(), SceneError> {
+    const NAME: &str = "[[light]]";
+    let kinds = [
+        ("point", Kind::Point),
+        ("directional", Kind::Directional),
+        ("spot", Kind::Spot),
+    ];
+    let section = Section::open(source, NAME, value)?;
+    section.require("kind")?;
+    let kind = section.choice("kind", &kinds)?.unwrap_or(Kind::Point);
+    section.allow(match kind {
+        Kind::Point => &["kind", "position", "intensity"],
+        Kind::Directional => &["kind", "direction", "irradiance"],
+        Kind::Spot => &[
+            "kind",
+            "position",
+            "direction",
+            "target",
+            "intensity",
+            "inner_deg",
+            "outer_deg",
+        ],
+    })?;
+    let vector = |key: &str| -> Result<Vec3<f32>, SceneError> {
+        section.require(key)?;
+        Ok(section.vector(key)?.unwrap_or_default())
+    };
+    let colour = |key: &str| -> Result<[f32; 3], SceneError> {
+        section.require(key)?;
+        Ok(section.colour(key)?.unwrap_or_default())
+    };
+    let unit = |key: &str, v: Vec3<f32>| -> Result<Vec3<f32>, SceneError> {
+        let n = v.to_f64().normalize().to_f32();
+        if n.is_finite() {
+            return Ok(n);
+        }
+        Err(section.error_at(key, format!("`{key}` gives no direction"), None))
+    };
+    builder.light(match kind {
+        Kind::Point => Light::Point {
+            position: vector("position")?,
+            intensity: colour("intensity")?,
+        },
+        Kind::Directional => Light::Directional {
+            direction: unit("direction", vector("direction")?)?,
+            irradiance: colour("irradiance")?,
+        },
+        Kind::Spot => {
+            let position = vector("position")?;
+            let direction = if section.get("target").is_some() {
+                refuse(&section, "direction", "`target` says where the spot points")?;
+                unit("target", vector("target")? - position)?
+            } else {
+                unit("direction", vector("direction")?)?
+            };
+            let angle = "an angle from 0 to 90 degrees";
+            let outer = section
+                .number_in("outer_deg", 0.0, 90.0, angle)?
+                .unwrap_or(30.0);
+            let inner = section
+                .number_in("inner_deg", 0.0, 90.0, angle)?
+                .unwrap_or(0.0);
+            let cone = SpotCone::new(inner.to_radians() as f32, outer.to_radians() as f32);
+            let cone = cone.ok_or_else(|| {
+                let message = format!(
+                    "a cone from {inner} to {outer} degrees, expected 0 ≤ inner ≤ outer, outer > 0"
+                );
+                section.error_at("outer_deg", message, None)
+            })?;
+            Light::Spot {
+                position,
+                direction,
+                intensity: colour("intensity")?,
+                cone,
+            }
+        }
+    });
+    Ok(())
+}
+
+/// `[environment]`.
+pub(super) fn environment(
+    builder: &mut SceneBuilder,
+    source: &Source,
+    value: &Value,
+) -> Result<(), SceneError> {
+    let keys = ["file", "uniform", "layout", "rotate_deg", "scale"];
+    let section = Section::new(source, "[environment]", value, &keys)?;
+    let layouts = [
+        ("lat-long", Layout::LatLong),
+        ("angular", Layout::Angular),
+        ("mirror-ball", Layout::MirrorBall),
+    ];
+    let layout = section.choice("layout", &layouts)?;
+    let mut made = match (section.path("file")?, section.colour("uniform")?) {
+        (Some(path), None) => Environment::load(&path, layout)
+            .map_err(|e| section.error_at("file", e.to_string(), e.help()))?,
+        (None, Some(radiance)) => {
+            refuse(&section, "layout", "a uniform environment has none")?;
+            Environment::uniform(radiance)
+        }
+        (None, None) => return Err(section.error("[environment] needs `file` or `uniform`", None)),
+        (Some(_), Some(_)) => {
+            return Err(section.error_at(
+                "uniform",
+                "[environment] has both `file` and `uniform`",
+                None,
+            ));
+        }
+    };
+    if let Some(yaw) = section.number("rotate_deg")? {
+        made = made.rotated_deg(yaw as f32);
+    }
+    if let Some(scale) = section.colour("scale")? {
+        made = made.scaled(scale);
+    }
+    builder.environment(made);
+    Ok(())
+}
