@@ -6,7 +6,7 @@
 //! |---|---|
 //! | RMSE | √(Σ (a − b)² / n) |
 //! | relative MSE | Σ (a − b)² / (b² + 0.01) / n |
-//! | PSNR [dB] | 20 log₁₀(peak / RMSE) |
+//! | PSNR in dB | 20 log₁₀(peak / RMSE) |
 //! | ꟻLIP | what an observer who flips between the two sees, in [0, 1]; module [`flip`] |
 //!
 //! The first three are of linear values, in `f64`, summed row by row.
@@ -80,7 +80,7 @@ pub struct Difference {
     pub rmse: f64,
     /// Mean of (a − b)² / (b² + 0.01).
     pub relative_mse: f64,
-    /// Peak signal-to-noise ratio [dB]; +∞ (`null` in JSON) for equal pictures.
+    /// Peak signal-to-noise ratio in dB; +∞ (`null` in JSON) for equal pictures.
     pub psnr_db: f64,
     /// The peak of the PSNR: the reference's largest sample, at least 1.
     pub peak: f64,

@@ -4,7 +4,7 @@ use super::colour::Opponent;
 use gonio_num::Real;
 use std::f64::consts::PI;
 
-/// Contrast sensitivity in one opponent channel: a₁ √(π/b₁) e^(−π²d²/b₁) + a₂ √(π/b₂) e^(−π²d²/b₂) at distance d [degrees].
+/// Contrast sensitivity in one opponent channel: a₁ √(π/b₁) e^(−π²d²/b₁) + a₂ √(π/b₂) e^(−π²d²/b₂) at distance d in degrees.
 /// Source: Andersson et al. 2020, table 1 (after Johnson & Fairchild 2003).
 struct Sensitivity {
     a: [f64; 2],
@@ -26,7 +26,7 @@ const BLUE_YELLOW: Sensitivity = Sensitivity {
 /// The widest b: it sets the radius of all.
 const WIDEST: f64 = 0.04;
 
-/// Width of an edge or a point that the feature detectors look for [degrees].
+/// Width of an edge or a point that the feature detectors look for, in degrees.
 const FEATURE_WIDTH: f64 = 0.082;
 
 /// Weights for offsets −r ..= r.

@@ -31,9 +31,9 @@ pub enum FlipKind {
     Ldr,
     /// HDR-ꟻLIP.
     Hdr {
-        /// The darkest exposure [stops].
+        /// The darkest exposure in stops.
         start_ev: f64,
-        /// The brightest exposure [stops].
+        /// The brightest exposure in stops.
         stop_ev: f64,
         /// How many exposures, evenly spaced.
         exposures: usize,
@@ -97,7 +97,7 @@ fn filmic(x: f32) -> f32 {
     ((p0 * x * x + p1 * x + p2) / (p3 * x * x + p4 * x + p5)).clamp(0.0, 1.0)
 }
 
-/// The exposures [stops] at which the reference's largest and its median luminance become 0.85 on the screen.
+/// The exposures in stops at which the reference's largest and its median luminance become 0.85 on the screen.
 fn exposure_range(reference: &Image) -> (f64, f64) {
     const SCREEN: f64 = 0.85;
     // The largest x with filmic(x) = 0.85.
