@@ -13,6 +13,7 @@
 mod affine;
 pub mod dispatch;
 pub mod dual;
+pub mod expr;
 mod frame;
 pub mod lanes;
 pub mod math;

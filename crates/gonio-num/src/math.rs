@@ -110,8 +110,8 @@ fn quarter_turns(x: f32) -> (u32, f32) {
     let n = rounded - ROUND;
     let r = ((x - n * PARTS[0]) - n * PARTS[1]) - n * PARTS[2] - n * PARTS[3];
     // Far outside the documented range the reduction is wrong; the result stays in [−1, 1] all the same.
-    let r = select(r < -0.786, -0.786, r);
-    let r = select(r > 0.786, 0.786, r);
+    let r = select(r < -0.79, -0.79, r);
+    let r = select(r > 0.79, 0.79, r);
     (rounded.to_bits(), r)
 }
 
