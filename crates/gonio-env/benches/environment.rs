@@ -90,7 +90,7 @@ fn build_lat_long() -> Environment {
     panorama(Layout::LatLong)
 }
 
-#[divan::bench]
+#[divan::bench(sample_count = 10, sample_size = 1)]
 fn info_lat_long(bencher: Bencher) {
     let env = panorama(Layout::LatLong);
     bencher.bench(|| env.info());

@@ -78,7 +78,7 @@ struct Survey {
 }
 
 impl Environment {
-    /// Measures the environment: some 10 ms a million texels and axis.
+    /// Measures the environment. It walks every texel for each axis: some tenths of a second for 1024 × 512.
     pub fn info(&self) -> EnvInfo {
         let mean_radiance = self.mean_radiance();
         let mut irradiance = [[0.0; 3]; 6];

@@ -133,14 +133,12 @@ impl SphereTable {
         let at = |i: usize| (1.0 - t) * f64::from(a[i]) + t * f64::from(b[i]);
         let x = u * at(w);
         // Largest i with at(i) ≤ x.
-        let (mut low, mut high) = (0, w);
-        while high - low > 1 {
-            let middle = low + (high - low) / 2;
-            if at(middle) <= x {
-                low = middle;
-            } else {
-                high = middle;
-            }
+        // Halving without branches: no processor predicts them.
+        let (mut low, mut length) = (0, w);
+        while length > 1 {
+            let half = length / 2;
+            low += if at(low + half) <= x { half } else { 0 };
+            length -= half;
         }
         let value = |i: usize| {
             (1.0 - t) * f64::from(self.values[above * w + i])

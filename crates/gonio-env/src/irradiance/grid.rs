@@ -132,7 +132,10 @@ impl<'a> Grid<'a> {
     /// Irradiance on a surface with the unit normal `n`.
     pub fn irradiance(&self, n: Vec3<f64>) -> Irradiance {
         let columns: Vec<_> = (0..self.map.width)
-            .map(|i| self.column_moments(i))
+            .map(|i| {
+                let centre = Real::sin_cos(self.phi(i) + 0.5 * self.step_phi);
+                (centre, self.column_moments(i))
+            })
             .collect();
         let mut whole = [0.0; 3];
         let (mut coarse, mut fine) = ([0.0; 3], [0.0; 3]);
@@ -152,8 +155,7 @@ impl<'a> Grid<'a> {
             } else {
                 f64::INFINITY
             };
-            for (column, of_column) in columns.iter().enumerate() {
-                let (sin_phi, cos_phi) = Real::sin_cos(self.phi(column) + 0.5 * self.step_phi);
+            for (column, ((sin_phi, cos_phi), of_column)) in columns.iter().enumerate() {
                 let centre = n.dot(Vec3::new(sin * sin_phi, cos, -sin * cos_phi));
                 if centre <= -limit {
                     continue;
