@@ -30,13 +30,18 @@ impl<R: Real> Frame<R> {
     }
 
     /// A frame whose s lies in the plane of the unit normal `n` and of `tangent` (Gram–Schmidt). Where `tangent` is
-    /// zero or along n (its part across n is below 1e-6 of it), [`Frame::from_normal`].
+    /// zero or along n (its part across n is below 1e-6 of it), or its square overflows or vanishes in this type,
+    /// [`Frame::from_normal`].
     #[inline(always)]
     pub fn from_normal_tangent(n: Vec3<R>, tangent: Vec3<R>) -> Self {
         let across = tangent - n * n.dot(tangent);
         let length2 = across.length_squared();
         let bad = length2.le(tangent.length_squared() * R::lit(1e-12));
         let s = across * length2.max(R::lit(1e-37)).sqrt().recip();
+        // Next to n the difference above has lost its digits; a second pass restores the right angle (Kahan and Parlett:
+        // "twice is enough").
+        let s = s - n * n.dot(s);
+        let s = s * s.length_squared().max(R::lit(1e-37)).sqrt().recip();
         let fallback = Self::from_normal(n);
         let s = Vec3::select(bad, fallback.s, s);
         Self {

@@ -26,3 +26,8 @@ pub use frame::Frame;
 pub use real::{LoopState, Mask, Real};
 pub use table::{Table1, Table2};
 pub use vec3::Vec3;
+
+/// The example of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -11,8 +11,8 @@
 //! relative error of the whole: found by Lawson's iteratively reweighted least squares (1961) on 1500 Chebyshev nodes, from
 //! 40-digit values, and then rounded to `f32`. The rounding to `f32` of the coefficients is part of the errors stated.
 //!
-//! Errors are stated in units in the last place (ulp) of the exact result, the largest over **all** `f32` arguments of the
-//! range, against double precision. A correctly rounded function has 0.5.
+//! Errors are stated in units in the last place (ulp) of the exact result, the largest found against double precision
+//! over at least every eighth `f32` of the range (60 million points for `atan2`). A correctly rounded function has 0.5.
 //!
 //! The sign and payload of a NaN differ between processors; whether a result is NaN does not.
 
@@ -44,7 +44,7 @@ pub fn floor(x: f32) -> f32 {
     select(magnitude < WHOLE, below, x)
 }
 
-/// eˣ. Largest error 0.97 ulp for results that are normal numbers, half the smallest subnormal more below.
+/// eˣ. Largest error 0.98 ulp; for subnormal results half the smallest subnormal more.
 ///
 /// exp(−∞) = 0, exp(∞) = ∞, NaN stays NaN; above 88.7228 the result is ∞, below −103.98 it is 0.
 #[inline(always)]
@@ -70,7 +70,7 @@ fn power_of_two(n: i32) -> f32 {
     f32::from_bits((n.wrapping_add(127) as u32) << 23)
 }
 
-/// Natural logarithm. Largest error 1.0 ulp.
+/// Natural logarithm. Largest error 0.84 ulp.
 ///
 /// ln(±0) = −∞, ln(∞) = ∞; NaN below 0 and for NaN.
 #[inline(always)]
@@ -127,7 +127,7 @@ fn sin_of_quarter(turns: u32, r: f32) -> f32 {
     f32::from_bits(value.to_bits() ^ ((turns & 2) << 30))
 }
 
-/// Sine of an angle in radians. Largest error 1.0 ulp for |x| ≤ 8192.
+/// Sine of an angle in radians. Error below 2.0 ulp for |x| ≤ 8192.
 ///
 /// Farther out the error grows with |x|, and past 4·10⁶ the result is only known to lie in [−1, 1]. NaN for ±∞ and NaN.
 #[inline(always)]
@@ -136,14 +136,14 @@ pub fn sin(x: f32) -> f32 {
     sin_of_quarter(turns, r)
 }
 
-/// Cosine of an angle in radians. Largest error 1.0 ulp for |x| ≤ 8192; beyond as [`sin`].
+/// Cosine of an angle in radians. Error below 2.0 ulp for |x| ≤ 8192; beyond as [`sin`].
 #[inline(always)]
 pub fn cos(x: f32) -> f32 {
     let (turns, r) = quarter_turns(x);
     sin_of_quarter(turns.wrapping_add(1), r)
 }
 
-/// Angle in [0, π] whose cosine is `x`. Largest error 1.0 ulp.
+/// Angle in [0, π] whose cosine is `x`. Largest error 1.14 ulp.
 ///
 /// `x` is clamped to [−1, 1]; NaN stays NaN.
 #[inline(always)]
@@ -167,9 +167,9 @@ pub fn acos(x: f32) -> f32 {
     select(steep, steep_value, flat)
 }
 
-/// Angle of the point (x, y) in [−π, π]. Largest error 1.0 ulp.
+/// Angle of the point (x, y) in [−π, π]. Largest error 1.58 ulp.
 ///
-/// 0 at the origin, whatever the signs of the zeros. Elsewhere the result has the sign of `y`, that of −0 too:
+/// 0 at the origin, whatever the sign of `x`. The result has the sign of `y`, that of −0 too:
 /// atan2(−0, −1) = −π. Infinities are taken as limits along the diagonal: atan2(∞, ∞) = π/4. NaN if either is NaN.
 #[inline(always)]
 pub fn atan2(y: f32, x: f32) -> f32 {

@@ -95,7 +95,7 @@ pub trait Real:
     fn cos(self) -> Self;
     /// Angle in [0, π] whose cosine is self; self is clamped to [−1, 1], NaN stays NaN.
     fn acos(self) -> Self;
-    /// Angle of the point (x, y) = (`x`, `self`) in [−π, π]; 0 at the origin.
+    /// Angle of the point (x, y) = (`x`, `self`) in [−π, π]; ±0 at the origin.
     fn atan2(self, x: Self) -> Self;
 
     /// self < other.

@@ -1,5 +1,8 @@
 //! Recorded functions: valid WGSL, and the same bits as the formula over `f32`.
 
+// Helpers of tests are tests.
+#![allow(clippy::unwrap_used)]
+
 use gonio_num::dual::Dual;
 use gonio_num::expr::{
     Arguments, Expr, Field, Function, Output, Parameter, RecordError, module, record,
