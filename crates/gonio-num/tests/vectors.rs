@@ -59,8 +59,8 @@ proptest! {
         n in unit(), tangent in unit(), toward_n in 0.0f32..20.0, size in -15.0f32..15.0,
     ) {
         // Tangents from right across the normal to along it, of many lengths.
-        let weight = 2f32.powf(-toward_n);
-        let tangent = (n * (1.0 - weight) + tangent * weight) * 10f32.powf(size);
+        let weight = Real::powf(2.0f32, -toward_n);
+        let tangent = (n * (1.0 - weight) + tangent * weight) * Real::powf(10.0f32, size);
         let frame = Frame::from_normal_tangent(n, tangent);
         assert_orthonormal(&frame);
         prop_assert!(frame.s.dot(tangent) >= -1e-3 * tangent.length());
