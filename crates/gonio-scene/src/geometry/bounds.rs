@@ -29,7 +29,9 @@ impl Aabb {
 
     /// The smallest box around some points; empty without any.
     pub fn around(points: impl IntoIterator<Item = Vec3<f32>>) -> Self {
-        points.into_iter().fold(Self::empty(), |b, p| b.including(p))
+        points
+            .into_iter()
+            .fold(Self::empty(), |b, p| b.including(p))
     }
 
     /// Whether it holds no point.

@@ -103,9 +103,7 @@ impl<K: Kernel, const ANY: bool> Visitor for Triangles<'_, K, ANY> {
     fn leaf(&mut self, first: u32, count: u32) -> bool {
         let (first, count) = (first as usize, count as usize);
         for block in &self.blocks[first..first + count] {
-            let mut hits = self
-                .kernel
-                .triangles(block, &self.prepared, self.nearest.t);
+            let mut hits = self.kernel.triangles(block, &self.prepared, self.nearest.t);
             while hits != 0 {
                 let lane = hits.trailing_zeros() as usize % LANES;
                 hits &= hits - 1;

@@ -30,9 +30,8 @@ impl Nearest {
     /// Takes a hit if it is nearer, or as near with a lower (instance, primitive). A NaN is never taken.
     #[inline(always)]
     pub(crate) fn offer(&mut self, t: f32, instance: u32, primitive: u32, u: f32, v: f32) -> bool {
-        let tie = t == self.t
-            && self.found
-            && (instance, primitive) < (self.instance, self.primitive);
+        let tie =
+            t == self.t && self.found && (instance, primitive) < (self.instance, self.primitive);
         if t < self.t || tie {
             *self = Self {
                 t,

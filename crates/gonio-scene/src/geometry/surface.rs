@@ -120,7 +120,11 @@ impl Local {
     pub(super) fn sphere(p: Vec3<f64>) -> Self {
         let n = p.normalize();
         let phi = Real::atan2(n.y, n.x);
-        let u = if phi < 0.0 { phi / TAU + 1.0 } else { phi / TAU };
+        let u = if phi < 0.0 {
+            phi / TAU + 1.0
+        } else {
+            phi / TAU
+        };
         let v = Real::acos(n.z) / PI;
         Self::plain(n, n, Vec3::new(-n.y, n.x, 0.0), [u, v])
     }

@@ -1,8 +1,8 @@
 //! The walk of a ray through a [`WideTree`], nearest boxes first.
 
+use super::Aabb;
 use super::kernel::Kernel;
 use super::tree::{LEAF, WIDTH, WideTree, leaf_items};
-use super::Aabb;
 use gonio_num::Vec3;
 
 /// A ray, prepared for boxes.
@@ -31,7 +31,9 @@ impl BoxRay {
         let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
         let mut reach = 0.0f32;
         for axis in 0..3 {
-            let r = (low[axis] - o[axis]).abs().max((high[axis] - o[axis]).abs());
+            let r = (low[axis] - o[axis])
+                .abs()
+                .max((high[axis] - o[axis]).abs());
             reach = reach.max(r);
         }
         let reach_pad = reach * (1.0 / (1 << 20) as f32);

@@ -199,11 +199,7 @@ impl TriangleMesh {
             let t = self.indices[i];
             if t.iter().any(|&v| v as usize >= count) {
                 done.out_of_range += 1;
-            } else if self
-                .corners(i)
-                .iter()
-                .any(|p| !good_position(p.to_array()))
-            {
+            } else if self.corners(i).iter().any(|p| !good_position(p.to_array())) {
                 done.bad_position += 1;
             } else if self.is_degenerate(i) {
                 done.degenerate += 1;

@@ -4,6 +4,8 @@
 //! formats with v upwards turn it.
 
 mod check;
+pub mod obj;
+pub mod ply;
 
 pub use check::{MAX_COORDINATE, MeshSummary, Repair};
 

@@ -150,9 +150,18 @@ fn rays_that_ask_nothing_hit_nothing() {
         Ray::new(zero, Vec3::new(nan, 0.0, 0.0)),
         Ray::new(zero, Vec3::new(f32::INFINITY, 0.0, 0.0)),
         Ray::new(Vec3::new(nan, 0.0, 0.0), x),
-        Ray { t_max: 0.0, ..Ray::new(zero, x) },
-        Ray { t_max: nan, ..Ray::new(zero, x) },
-        Ray { t_max: -1.0, ..Ray::new(zero, x) },
+        Ray {
+            t_max: 0.0,
+            ..Ray::new(zero, x)
+        },
+        Ray {
+            t_max: nan,
+            ..Ray::new(zero, x)
+        },
+        Ray {
+            t_max: -1.0,
+            ..Ray::new(zero, x)
+        },
     ] {
         for g in [&g, &mesh] {
             assert_eq!(g.intersect(&ray), None, "{ray:?}");

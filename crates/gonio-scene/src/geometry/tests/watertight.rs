@@ -75,7 +75,14 @@ fn a_box_with_whole_coordinates_does_not_leak_at_its_edges() {
     let geometry = of_mesh(mesh.clone());
     for i in -8..=8i8 {
         for j in -8..=8i8 {
-            for (axis, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0), (2, 1.0), (2, -1.0)] {
+            for (axis, sign) in [
+                (0, 1.0),
+                (0, -1.0),
+                (1, 1.0),
+                (1, -1.0),
+                (2, 1.0),
+                (2, -1.0),
+            ] {
                 let mut origin = [0.0; 3];
                 let mut direction = [0.0; 3];
                 direction[axis] = sign;

@@ -1,0 +1,224 @@
+//! Ray queries on one thread, in rays a second (divan's "items/s"), on two scenes: a bumpy sphere of 998,000 triangles and
+//! a soup of 200,000. Pin it to one core to compare: `taskset -c 0 cargo bench -p gonio-scene`.
+
+use divan::counter::ItemsCount;
+use divan::{Bencher, black_box};
+use gonio_num::{Affine3, Vec3};
+use gonio_scene::{Geometry, Instance, Ray, Shape, TriangleMesh, mesh};
+use std::path::Path;
+use std::sync::{Arc, LazyLock};
+
+fn main() {
+    divan::main();
+}
+
+const SIDE: usize = 512;
+
+/// SplitMix64.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+    fn point(&mut self) -> Vec3<f64> {
+        let mut one = || 2.0 * self.unit() - 1.0;
+        Vec3::new(one(), one(), one())
+    }
+    fn direction(&mut self) -> Vec3<f64> {
+        loop {
+            let p = self.point();
+            if (1e-3..1.0).contains(&p.length_squared()) {
+                return p.normalize();
+            }
+        }
+    }
+}
+
+/// Three octaves of bumps on the unit sphere around (0, 1.06, 0).
+fn sphere_mesh() -> TriangleMesh {
+    let (columns, rows) = (1000u32, 501u32);
+    let mut mesh = TriangleMesh::default();
+    for i in 0..rows {
+        let theta = std::f64::consts::PI * f64::from(i) / f64::from(rows - 1);
+        for j in 0..columns {
+            let phi = std::f64::consts::TAU * f64::from(j) / f64::from(columns);
+            let (x, y, z) = (
+                theta.sin() * phi.cos(),
+                theta.cos(),
+                theta.sin() * phi.sin(),
+            );
+            let r = 1.0
+                + 0.06 * (9.0 * x + 1.0).sin() * (11.0 * y).sin() * (10.0 * z + 0.5).sin()
+                + 0.02 * (37.0 * x).sin() * (41.0 * y + 0.3).sin() * (43.0 * z).sin()
+                + 0.004 * (151.0 * x).sin() * (163.0 * y).sin() * (157.0 * z).sin();
+            let p = Vec3::new(x * r, y * r + 1.06, z * r);
+            mesh.positions.push(p.to_f32());
+        }
+    }
+    for i in 0..rows - 1 {
+        for j in 0..columns {
+            let (a, b) = (i * columns + j, i * columns + (j + 1) % columns);
+            let (c, d) = (a + columns, b + columns);
+            mesh.indices.push([a, b, c]);
+            mesh.indices.push([b, d, c]);
+        }
+    }
+    mesh.repair();
+    mesh
+}
+
+fn soup_mesh() -> TriangleMesh {
+    let mut random = Random(7);
+    let mut mesh = TriangleMesh::default();
+    for i in 0..200_000 {
+        let centre = random.point() * 1.2 + Vec3::new(0.0, 1.06, 0.0);
+        for _ in 0..3 {
+            let p = centre + random.point() * 0.02;
+            mesh.positions.push(p.to_f32());
+        }
+        mesh.indices.push([3 * i, 3 * i + 1, 3 * i + 2]);
+    }
+    mesh
+}
+
+fn place(mesh: TriangleMesh) -> Geometry {
+    let instance = Instance {
+        shape: 0,
+        to_world: Affine3::identity(),
+        material: 0,
+        area_light: None,
+    };
+    Geometry::build(vec![Shape::Mesh(Arc::new(mesh))], vec![instance]).expect("a sound mesh")
+}
+
+static SPHERE: LazyLock<Geometry> = LazyLock::new(|| place(sphere_mesh()));
+static SOUP: LazyLock<Geometry> = LazyLock::new(|| place(soup_mesh()));
+
+fn scene(name: &str) -> &'static Geometry {
+    if name == "soup" { &SOUP } else { &SPHERE }
+}
+
+/// A camera's rays, by tiles of 8 × 8.
+fn primary() -> Vec<Ray> {
+    let eye = Vec3::new(0.0, 2.2, 6.0);
+    let camera = Affine3::look_at(eye, Vec3::new(0.0, 0.9, 0.0), Vec3::new(0.0, 1.0, 0.0));
+    let slope = 12f64.to_radians().tan();
+    let tiles = SIDE / 8;
+    (0..SIDE * SIDE)
+        .map(|i| {
+            let (tile, inner) = (i / 64, i % 64);
+            let x = (tile % tiles) * 8 + inner % 8;
+            let y = (tile / tiles) * 8 + inner / 8;
+            let at = |k: usize| (k as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0;
+            let d = Vec3::new(at(x) * slope, -at(y) * slope, -1.0);
+            let d = camera.transform_vector(d).normalize();
+            Ray::new(eye.to_f32(), d.to_f32())
+        })
+        .collect()
+}
+
+/// Random points of the bounding cube, random directions.
+fn incoherent() -> Vec<Ray> {
+    let mut random = Random(1);
+    (0..SIDE * SIDE)
+        .map(|_| {
+            let o = random.point() * 1.2 + Vec3::new(0.0, 1.06, 0.0);
+            Ray::new(o.to_f32(), random.direction().to_f32())
+        })
+        .collect()
+}
+
+/// From random points of the surface, cosine-distributed around the normal.
+fn second_bounce(g: &Geometry) -> Vec<Ray> {
+    let mut random = Random(2);
+    (0..SIDE * SIDE)
+        .map(|_| {
+            let mut one = || random.unit() as f32;
+            let s = g.sample_area(0, [one(), one()], one());
+            let outward = (s.p - Vec3::new(0.0, 1.06, 0.0)).dot(s.ng);
+            let n = if outward < 0.0 { -s.ng } else { s.ng };
+            let d = (random.direction() + n.to_f64()).normalize();
+            Ray::new(s.p + n * 1e-4, d.to_f32())
+        })
+        .collect()
+}
+
+fn nearest(bencher: Bencher, g: &Geometry, rays: &[Ray]) {
+    bencher.counter(ItemsCount::new(rays.len())).bench(|| {
+        rays.iter()
+            .filter(|r| black_box(g.intersect(r)).is_some())
+            .count()
+    });
+}
+
+fn any(bencher: Bencher, g: &Geometry, rays: &[Ray]) {
+    bencher
+        .counter(ItemsCount::new(rays.len()))
+        .bench(|| rays.iter().filter(|r| black_box(g.occluded(r))).count());
+}
+
+#[divan::bench(args = ["sphere", "soup"], sample_count = 9)]
+fn a_primary(bencher: Bencher, name: &str) {
+    nearest(bencher, scene(name), &primary());
+}
+
+#[divan::bench(args = ["sphere", "soup"], sample_count = 9)]
+fn b_incoherent(bencher: Bencher, name: &str) {
+    nearest(bencher, scene(name), &incoherent());
+}
+
+#[divan::bench(args = ["sphere", "soup"], sample_count = 9)]
+fn c_second_bounce(bencher: Bencher, name: &str) {
+    nearest(bencher, scene(name), &second_bounce(scene(name)));
+}
+
+#[divan::bench(args = ["sphere", "soup"], sample_count = 9)]
+fn d_any_primary(bencher: Bencher, name: &str) {
+    any(bencher, scene(name), &primary());
+}
+
+#[divan::bench(args = ["sphere", "soup"], sample_count = 9)]
+fn e_any_incoherent(bencher: Bencher, name: &str) {
+    any(bencher, scene(name), &incoherent());
+}
+
+#[divan::bench(args = ["sphere", "soup"], sample_count = 3)]
+fn f_build(bencher: Bencher, name: &str) {
+    let make = if name == "soup" {
+        soup_mesh
+    } else {
+        sphere_mesh
+    };
+    bencher.with_inputs(make).bench_values(place);
+}
+
+/// 998,000 triangles of binary PLY.
+#[divan::bench(sample_count = 3)]
+fn g_read_ply(bencher: Bencher) {
+    let mesh = sphere_mesh();
+    let mut bytes = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
+         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        mesh.positions.len(),
+        mesh.indices.len()
+    )
+    .into_bytes();
+    for p in &mesh.positions {
+        for x in p.to_array() {
+            bytes.extend(x.to_le_bytes());
+        }
+    }
+    for t in &mesh.indices {
+        bytes.push(3);
+        for i in t {
+            bytes.extend(i.to_le_bytes());
+        }
+    }
+    bencher
+        .counter(ItemsCount::new(mesh.indices.len()))
+        .bench(|| mesh::ply::parse(black_box(&bytes), Path::new("memory")).expect("sound"));
+}
