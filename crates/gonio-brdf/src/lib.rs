@@ -25,16 +25,20 @@
 //! in the local frame with normal +z. Below the horizon (z ≤ 0 of either) every function is 0.
 
 mod brdf;
+mod check;
 mod error;
 mod number;
 mod parameter;
 mod spec;
 
+pub mod batch;
+pub mod measured;
 pub mod model;
 pub mod part;
 pub mod registry;
 
 pub use brdf::{Brdf, Sample};
+pub use check::check;
 pub use error::BrdfError;
 pub use model::{Model, ParameterSlot};
 pub use number::Number;

@@ -1,7 +1,7 @@
 //! Measured reflectance: tables in memory, and one file for each format that is read.
 
+mod choice;
 pub mod merl;
-mod steps;
-pub mod tabulated;
+mod tabulated;
 
-pub use tabulated::{Axes, Policy, Tabulated};
+pub use tabulated::{Axes, Tabulated};

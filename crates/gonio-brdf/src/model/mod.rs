@@ -11,11 +11,18 @@ pub mod oren_nayar;
 pub mod phong;
 pub mod scaled;
 pub mod sum;
+pub mod table;
 pub mod toon;
 pub mod torrance_sparrow;
 
 use crate::{Brdf, BrdfError, ModelInfo, ModelSpec, Number, Sample, registry};
 use gonio_num::{Real, Vec3};
+
+/// What is done with a model in its own type: the choice among models then stands outside the loop.
+pub(crate) trait Visitor<R: Real, const N: usize> {
+    /// Called once.
+    fn visit<B: Brdf<R, N>>(self, model: &B);
+}
 
 macro_rules! models {
     ($($(#[$doc:meta])* $variant:ident: $module:ident,)*) => {
@@ -62,6 +69,12 @@ macro_rules! models {
                 match self { $(Self::$variant(m) => Model::$variant(m.cast(f)),)* }
             }
 
+            /// Calls the visitor with the model in its own type.
+            #[inline(always)]
+            pub(crate) fn visit<V: Visitor<R, N>>(&self, visitor: V) {
+                match self { $(Self::$variant(m) => visitor.visit(m),)* }
+            }
+
             /// The registry's entry.
             pub fn info(&self) -> &'static ModelInfo {
                 match self { $(Self::$variant(_) => &const { $module::INFO },)* }
@@ -95,6 +108,8 @@ models! {
     Sum: sum,
     /// A model times a colour.
     Scaled: scaled,
+    /// A measured table (T19).
+    Table: table,
 }
 
 impl<R: Number, const N: usize> Model<R, N> {

@@ -105,9 +105,11 @@ pub const INFO: ModelInfo = ModelInfo {
 
 fn declares(spec: &ModelSpec) -> Declares {
     let isotropic = slope_scales(spec).is_ok_and(|(x, y)| x == y);
+    // Smith's masking for the Blinn–Phong distribution borrows Λ from Beckmann's: visible areas then don't add up.
+    let borrowed = spec.word("distribution") == "blinn-phong" && spec.word("masking") != "v-cavity";
     Declares {
         isotropic,
-        ..Declares::physical(1.0)
+        ..Declares::physical(if borrowed { f64::INFINITY } else { 1.0 })
     }
 }
 
@@ -150,8 +152,8 @@ fn aspect<R: Real>(anisotropy: R) -> R {
 /// f_ms = F_ms (1 − E(μi)) (1 − E(μr))/(π (1 − Ē)),  F_ms = F̄² Ē/(1 − F̄ (1 − Ē)),
 ///
 /// where E is the directional albedo for F = 1 (a table over √μ and √α), Ē its mean and F̄ the mean reflectance. The
-/// geometric series F̄^k (1 − Ē)^(k−1) Ē over k ≥ 2 facets gives F_ms. For F = 1 a white furnace then is exactly 1 but for the table's
-/// interpolation (below 2e-3). With anisotropy the table is read at the smaller slope scale, which loses less than the true
+/// geometric series F̄^k (1 − Ē)^(k−1) Ē over k ≥ 2 facets gives F_ms. For F = 1 a white furnace then is 1 but for the table's
+/// interpolation: never more, and at most 4e-3 less. With anisotropy the table is read at the smaller slope scale, which loses less than the true
 /// surface: the lobe then compensates too little, never too much.
 ///
 /// Sampling: visible normals for GGX (Dupuy & Benyoub 2023), all normals with density D h.z for the others, and the

@@ -50,7 +50,8 @@ impl<R: Real> Distribution<R> {
         let z2 = (h.z * h.z).max(R::lit(1e-12));
         let (ex, ey) = ((h.x / ax).sq(), (h.y / ay).sq());
         let d = match self.shape {
-            Shape::Ggx => norm / (ex + ey + h.z * h.z).max(R::lit(1e-12)).sq(),
+            // e ≥ 1 for unit h, as no α is above 1.
+            Shape::Ggx => norm / (ex + ey + h.z * h.z).max(R::lit(0.5)).sq(),
             Shape::Beckmann => norm * (-((ex + ey) / z2)).exp() / (z2 * z2),
             Shape::BlinnPhong => {
                 // (p/2) tan²θ-weighted: h.zᵖ = exp(−p/2 · ln(1 + tan²θ)), which keeps its digits near the pole.

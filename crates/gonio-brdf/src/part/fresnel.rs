@@ -110,7 +110,7 @@ impl<R: Real, const N: usize> Fresnel<R, N> {
 
     /// Cosine-weighted mean over the hemisphere, 2 ∫₀¹ F(μ) μ dμ.
     ///
-    /// Closed form for Schlick's, (1 + 20 F₀)/21; else Gauss–Legendre quadrature of 16 nodes in √(1 − μ), whose error is below 1e-5.
+    /// Closed form for Schlick's, (1 + 20 F₀)/21; else Gauss–Legendre quadrature of 16 nodes in √μ, whose error is below 1e-5.
     pub fn average(&self) -> [R; N] {
         match *self {
             Self::None => grey(R::one()),
@@ -125,12 +125,12 @@ impl<R: Real, const N: usize> Fresnel<R, N> {
                 let mut out = grey(R::zero());
                 for (x, w) in GAUSS_LEGENDRE_16 {
                     for side in [-1.0, 1.0] {
-                        // μ = 1 − t², dμ = 2t dt, t = (1 ± x)/2.
+                        // μ = t², 2μ dμ = 4t³ dt, t = (1 ± x)/2: nodes gather at grazing angles.
                         let t = 0.5 * (1.0 + side * x);
-                        let mu = 1.0 - t * t;
+                        let mu = t * t;
                         let f = self.eval(R::lit(mu));
                         for c in 0..N {
-                            out[c] = out[c] + f[c] * R::lit(w * 2.0 * t * mu);
+                            out[c] = out[c] + f[c] * R::lit(w * 4.0 * t * mu);
                         }
                     }
                 }

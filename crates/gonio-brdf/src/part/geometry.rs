@@ -25,9 +25,13 @@ impl<R: Real> Half<R> {
     #[inline(always)]
     pub fn new(wi: Vec3<R>, wo: Vec3<R>) -> Self {
         let sum = wi + wo;
-        let length = sum.length_squared().max(R::lit(1e-30)).sqrt();
+        let length2 = sum.length_squared();
+        let length = length2.max(R::lit(1e-30)).sqrt();
+        // Opposite and both grazing to 1e-15: any half vector is as good as another.
+        let lost = length2.lt(R::lit(1e-30));
+        let up = Vec3::new(R::zero(), R::zero(), R::one());
         Self {
-            h: sum * length.recip(),
+            h: Vec3::select(lost, up, sum * length.recip()),
             cos: (length * R::lit(0.5)).min(R::one()),
         }
     }

@@ -58,7 +58,8 @@ pub fn visibility<R: Real>(
     wo: Vec3<R>,
     half: &Half<R>,
 ) -> R {
-    let tiny = R::lit(1e-30);
+    // D is at most 4/(π αx αy) ≤ 1.3e8: the product with this stays within single precision.
+    let tiny = R::lit(1e-29);
     let quarter = R::lit(0.25);
     match masking {
         Masking::VCavity => {
