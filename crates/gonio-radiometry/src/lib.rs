@@ -1,5 +1,9 @@
 //! Radiometry: the measure of light, and the geometry and sampling under it.
 //!
+//! - [`quantity`]: radiometric and photometric quantities as types with units
+//! - [`photometry`]: from watts to lumens
+//! - [`spectrum`]: functions of wavelength, black bodies, illuminants, the CIE 1931 observer
+//! - [`colour`]: XYZ, RGB spaces, Lab, and spectra from RGB
 //! - [`direction`]: spherical coordinates, both ways
 //! - [`solid_angle`]: solid angles and projected solid angles in closed form, and the Jacobians between measures
 //! - [`quadrature`]: integrals over the sphere, the hemisphere and rectangles
@@ -8,11 +12,15 @@
 //!
 //! This crate is floor 1: it knows numbers and vectors of `gonio_num`, and nothing of surfaces, scenes or images.
 
+pub mod colour;
 pub mod direction;
 mod error;
+pub mod photometry;
 pub mod quadrature;
+pub mod quantity;
 pub mod sequence;
 pub mod solid_angle;
+pub mod spectrum;
 pub mod warp;
 
 #[cfg(test)]
