@@ -4,13 +4,13 @@
 //! 1. An [`Avx2`] exists only where [`Avx2::detect`] found every instruction set that the functions here are compiled
 //!    for; so whoever holds one may run them.
 //! 2. Vector loads read arrays of eight `f32` inside structures of alignment 32 or more, at multiples of 32 bytes.
-//! 3. Prefetches touch no memory that the program sees; their addresses come from indices in range.
+//! 3. Prefetches change nothing that the program sees, and their addresses lie within what a reference leads to.
 //!
 //! The tests compare both kernels bit by bit.
 #![allow(unsafe_code)]
 
 use super::kernel::{BEYOND, Eight, Kernel};
-use super::tree::{LEAF, Node, WIDTH, WideTree};
+use super::tree::{Node, WIDTH};
 use super::triangle::{TriangleBlock, TriangleRay};
 use super::walk::BoxRay;
 use super::{Geometry, Hit, Ray};
@@ -202,18 +202,11 @@ impl Kernel for Avx2 {
     }
 
     #[inline(always)]
-    fn prefetch(self, tree: &WideTree, child: u32) {
-        if child & LEAF == 0
-            && let Some(node) = tree.nodes.get(child as usize)
-        {
-            let start = std::ptr::from_ref(node).cast::<i8>();
+    fn prefetch<T>(self, item: &T) {
+        let start = std::ptr::from_ref(item).cast::<i8>();
+        for line in 0..size_of::<T>().div_ceil(64) {
             // SAFETY: invariant 3.
-            unsafe {
-                _mm_prefetch::<_MM_HINT_T0>(start);
-                _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64));
-                _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(128));
-                _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(192));
-            }
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line)) };
         }
     }
 }

@@ -1,6 +1,6 @@
 //! [`Kernel`], the two tests that ray queries spend their time in, and their portable form.
 
-use super::tree::{Node, WIDTH, WideTree};
+use super::tree::{Node, WIDTH};
 use super::triangle::{LANES, TriangleBlock, TriangleRay};
 use super::walk::BoxRay;
 
@@ -26,8 +26,8 @@ pub(crate) trait Kernel: Copy {
     /// A bit for each triangle that the ray may meet in (0, t_max]: the edge functions don't disagree in sign, and the
     /// corners lie neither all behind the origin nor all beyond t_max.
     fn triangles(self, block: &TriangleBlock, ray: &Self::Triangles, t_max: f32) -> u32;
-    /// Announces that a child will be visited.
-    fn prefetch(self, tree: &WideTree, child: u32);
+    /// Announces that `item` will be read.
+    fn prefetch<T>(self, item: &T);
 }
 
 /// The relative margin by which a corner may lie beyond t_max and yet be tested: more than the roundings of its t.
@@ -122,5 +122,5 @@ impl Kernel for Portable {
     }
 
     #[inline(always)]
-    fn prefetch(self, _: &WideTree, _: u32) {}
+    fn prefetch<T>(self, _: &T) {}
 }

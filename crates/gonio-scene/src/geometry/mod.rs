@@ -39,8 +39,8 @@ use tree::{Purpose, WideTree};
 
 /// All surfaces of a scene, ready for ray queries.
 ///
-/// Memory beside the meshes themselves: about 95 bytes a triangle of each mesh, however often it is placed, and about 500
-/// bytes an instance.
+/// Memory beside the meshes themselves: for each mesh, however often it is placed, 320 bytes for each block of up to eight
+/// triangles (40 a triangle if all were full) and 256 for each node of up to eight boxes; [`Geometry::tree_bytes`] counts.
 #[derive(Debug)]
 pub struct Geometry {
     shapes: Vec<Shape>,

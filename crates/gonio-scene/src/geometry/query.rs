@@ -135,4 +135,7 @@ impl<K: Kernel, const ANY: bool> Visitor for Instances<'_, K, ANY> {
         }
         false
     }
+
+    #[inline(always)]
+    fn prefetch(&self, _: u32) {}
 }

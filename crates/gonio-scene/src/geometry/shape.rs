@@ -69,7 +69,7 @@ pub(crate) fn cross_sphere(o: Vec3<f64>, d: Vec3<f64>, t_max: f32) -> Option<f32
 pub(crate) fn cross_plane(o: Vec3<f64>, d: Vec3<f64>) -> Option<(f32, f64, f64)> {
     let t = -o.z / d.z;
     let near = t as f32;
-    (near > 0.0 && near < f32::INFINITY).then(|| (near, o.x + t * d.x, o.y + t * d.y))
+    (near > 0.0 && near < f32::INFINITY).then_some((near, o.x + t * d.x, o.y + t * d.y))
 }
 
 impl Shape {

@@ -66,6 +66,18 @@ pub(crate) trait Visitor {
     fn t_max(&self) -> f32;
     /// Tests `count` items from `first` on; true ends the walk.
     fn leaf(&mut self, first: u32, count: u32) -> bool;
+    /// Announces that the items from `first` on will be tested.
+    fn prefetch(&self, first: u32);
+}
+
+/// Announces that a child will be visited: by then its memory has arrived.
+#[inline(always)]
+fn announce<K: Kernel, V: Visitor>(kernel: K, tree: &WideTree, visitor: &V, child: u32) {
+    if child & LEAF != 0 {
+        visitor.prefetch(leaf_items(child).0);
+    } else if let Some(node) = tree.nodes.get(child as usize) {
+        kernel.prefetch(node);
+    }
 }
 
 /// Entries kept without allocation. A million triangles need about 60.
@@ -115,6 +127,7 @@ pub(crate) fn walk<K: Kernel, V: Visitor>(
                 if hits == 0 {
                     continue;
                 }
+                announce(kernel, tree, visitor, current);
                 let base = top;
                 let mut nearest = near.0[i];
                 while hits != 0 {
@@ -124,7 +137,7 @@ pub(crate) fn walk<K: Kernel, V: Visitor>(
                         near: near.0[j],
                         child: node.children[j],
                     };
-                    kernel.prefetch(tree, entry.child);
+                    announce(kernel, tree, visitor, entry.child);
                     if V::ANY {
                         stack[top] = entry;
                         top += 1;

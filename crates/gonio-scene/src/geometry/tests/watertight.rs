@@ -105,7 +105,7 @@ fn a_mesh_far_from_the_origin_does_not_leak() {
     let mut mesh = bumpy_sphere(40, 30, 0.05);
     let centre = Vec3::new(1000.0, -2000.0, 500.0);
     for p in &mut mesh.positions {
-        *p = *p + centre;
+        *p += centre;
     }
     let geometry = of_mesh(mesh.clone());
     let mut random = Random::named("a_mesh_far_from_the_origin_does_not_leak");
