@@ -90,7 +90,7 @@ pub(super) fn read(
                 .position(|m| m.name == "default");
             match default {
                 Some(at) => (named + at) as u32,
-                None => builder.material(mesh::grey()?),
+                None => builder.material(mesh::grey("default")?),
             }
         }
     };
