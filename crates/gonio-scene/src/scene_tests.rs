@@ -5,7 +5,11 @@ use crate::{Projection, Ray};
 const UP: Vec3<f32> = Vec3::new(0.0, 1.0, 0.0);
 
 fn grey(name: &str) -> Material {
-    Material::new(name, &ModelSpec::parse("lambertian:reflectance=0.5").unwrap()).unwrap()
+    Material::new(
+        name,
+        &ModelSpec::parse("lambertian:reflectance=0.5").unwrap(),
+    )
+    .unwrap()
 }
 
 fn ball(material: Material) -> SceneBuilder {
@@ -20,7 +24,10 @@ fn ball(material: Material) -> SceneBuilder {
 fn nothing_to_render_is_an_error_that_says_so() {
     let error = SceneBuilder::new("void").build().unwrap_err();
     assert!(matches!(error, SceneError::Empty { .. }));
-    assert!(error.to_string().contains("`void`") && error.help().is_some(), "{error}");
+    assert!(
+        error.to_string().contains("`void`") && error.help().is_some(),
+        "{error}"
+    );
     let mut sky = SceneBuilder::new("sky");
     sky.environment(Environment::uniform([1.0; 3]));
     let sky = sky.build().unwrap();
@@ -57,10 +64,22 @@ fn materials_are_replaced_by_name() {
 #[test]
 fn lights_and_materials_are_checked() {
     let bad = [
-        Light::Point { position: UP, intensity: [-1.0, 0.0, 0.0] },
-        Light::Point { position: Vec3::splat(f32::NAN), intensity: [1.0; 3] },
-        Light::Directional { direction: Vec3::splat(1.0), irradiance: [1.0; 3] },
-        Light::Directional { direction: UP, irradiance: [f32::INFINITY; 3] },
+        Light::Point {
+            position: UP,
+            intensity: [-1.0, 0.0, 0.0],
+        },
+        Light::Point {
+            position: Vec3::splat(f32::NAN),
+            intensity: [1.0; 3],
+        },
+        Light::Directional {
+            direction: Vec3::splat(1.0),
+            irradiance: [1.0; 3],
+        },
+        Light::Directional {
+            direction: UP,
+            irradiance: [f32::INFINITY; 3],
+        },
     ];
     for light in bad {
         let mut builder = ball(grey("a"));
@@ -72,14 +91,21 @@ fn lights_and_materials_are_checked() {
     let disk = builder.shape(Shape::Disk);
     builder.instance(disk, Affine3::identity(), 7);
     let error = builder.build().unwrap_err().to_string();
-    assert!(error.contains("material of instance 1") && error.contains("below 1"), "{error}");
+    assert!(
+        error.contains("material of instance 1") && error.contains("below 1"),
+        "{error}"
+    );
 }
 
 /// A ray through a half transparent sphere crosses two layers: (1 − ½)² passes.
 #[test]
 fn transmittance_multiplies_layers() {
     let mut glass = grey("glass");
-    glass.opacity = Opacity { mode: AlphaMode::Blend, factor: 0.5, ..Opacity::default() };
+    glass.opacity = Opacity {
+        mode: AlphaMode::Blend,
+        factor: 0.5,
+        ..Opacity::default()
+    };
     let scene = ball(glass).build().unwrap();
     let ray = Ray::new(Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.0, 0.0, -1.0));
     assert!(scene.has_transparency() && scene.occluded(&ray));
@@ -100,16 +126,29 @@ fn surfaces_shade_and_emit_as_their_material() {
     let ray = Ray::new(Vec3::new(0.0, 0.0, 5.0), Vec3::new(0.0, 0.0, -1.0));
     let point = scene.intersect(&ray).unwrap();
     assert_eq!(scene.emitted(&point, -ray.direction), [2.0, 1.0, 0.0]);
-    assert_eq!(scene.emitted(&point, ray.direction), [0.0; 3], "not inwards");
+    assert_eq!(
+        scene.emitted(&point, ray.direction),
+        [0.0; 3],
+        "not inwards"
+    );
     let shading = scene.shade(&point, -ray.direction);
     assert!((shading.frame.n - Vec3::new(0.0, 0.0, 1.0)).length() < 1e-6);
-    assert_eq!(scene.shade(&point, ray.direction).frame.n, -shading.frame.n, "the frame faces the viewer");
+    assert_eq!(
+        scene.shade(&point, ray.direction).frame.n,
+        -shading.frame.n,
+        "the frame faces the viewer"
+    );
 }
 
 #[test]
 fn the_first_camera_is_the_default() {
     let mut builder = ball(grey("a"));
-    let made = Camera::new("one", &Affine3::identity(), Projection::Pinhole { fov_y_rad: 0.5 }).unwrap();
+    let made = Camera::new(
+        "one",
+        &Affine3::identity(),
+        Projection::Pinhole { fov_y_rad: 0.5 },
+    )
+    .unwrap();
     builder.camera(made.clone());
     assert_eq!(builder.build().unwrap().camera_or_framing(1.0), made);
 }

@@ -39,15 +39,24 @@ const MODELS: [(&str, &str); 28] = [
 
 /// The glTF file of a model in the folder of samples.
 fn file(folder: &Path, model: &str) -> Option<PathBuf> {
-    let candidates = [format!("glTF-Binary/{model}.glb"), format!("glTF/{model}.gltf")];
-    candidates.iter().map(|c| folder.join(model).join(c)).find(|p| p.exists())
+    let candidates = [
+        format!("glTF-Binary/{model}.glb"),
+        format!("glTF/{model}.gltf"),
+    ];
+    candidates
+        .iter()
+        .map(|c| folder.join(model).join(c))
+        .find(|p| p.exists())
 }
 
 fn samples() -> Option<PathBuf> {
     let given = std::env::var_os("GONIO_GLTF_SAMPLES").map(PathBuf::from);
     // Beside a checkout, or further up.
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let beside = root.ancestors().map(|a| a.join("shared/data/gltf")).find(|p| p.is_dir());
+    let beside = root
+        .ancestors()
+        .map(|a| a.join("shared/data/gltf"))
+        .find(|p| p.is_dir());
     given.or(beside)
 }
 
@@ -62,7 +71,8 @@ fn every_sample_loads() {
             eprintln!("skipped: no {model}");
             continue;
         };
-        let scene = Scene::load(&path, &LoadOptions::default()).unwrap_or_else(|e| panic!("{model}: {e}"));
+        let scene =
+            Scene::load(&path, &LoadOptions::default()).unwrap_or_else(|e| panic!("{model}: {e}"));
         println!(
             "{model}: {} triangles, {} instances, {} materials, {} lights, {} cameras",
             scene.geometry.triangle_count(),
@@ -78,11 +88,18 @@ fn every_sample_loads() {
         let unexpected: Vec<_> = scene
             .warnings
             .iter()
-            .filter(|w| !w.contains("no light") && (expected.is_empty() || !w.contains("KHR_") && !w.contains(expected)))
+            .filter(|w| {
+                !w.contains("no light")
+                    && (expected.is_empty() || !w.contains("KHR_") && !w.contains(expected))
+            })
             .collect();
         assert!(unexpected.is_empty(), "{model}: {unexpected:?}");
         if !expected.is_empty() {
-            assert!(scene.warnings.iter().any(|w| w.contains(expected)), "{model}: {:?}", scene.warnings);
+            assert!(
+                scene.warnings.iter().any(|w| w.contains(expected)),
+                "{model}: {:?}",
+                scene.warnings
+            );
         }
         shade_all_over(model, &scene);
     }
@@ -95,15 +112,30 @@ fn shade_all_over(model: &str, scene: &Scene) {
     for i in 0..48 * 48 {
         let film = [(i % 48) as f32 / 48.0, (i / 48) as f32 / 48.0];
         let ray = camera.ray(film, 1.0, [0.5; 2]);
-        let Some(point) = scene.intersect(&ray) else { continue };
+        let Some(point) = scene.intersect(&ray) else {
+            continue;
+        };
         hits += 1;
         let wo = -ray.direction;
         let shading = scene.shade(&point, wo);
-        assert!(shading.frame.n.is_finite() && shading.frame.n.dot(wo) > 0.0, "{model}");
+        assert!(
+            shading.frame.n.is_finite() && shading.frame.n.dot(wo) > 0.0,
+            "{model}"
+        );
         assert!((0.0..=1.0).contains(&shading.alpha), "{model}");
-        let f = gonio_brdf::Brdf::eval_cos(&*shading.model, Vec3::new(0.0, 0.0, 1.0), shading.frame.to_local(wo));
-        assert!(f.iter().all(|x| x.is_finite() && *x >= 0.0), "{model}: {f:?}");
-        assert!(scene.emitted(&point, wo).iter().all(|x| x.is_finite()), "{model}");
+        let f = gonio_brdf::Brdf::eval_cos(
+            &*shading.model,
+            Vec3::new(0.0, 0.0, 1.0),
+            shading.frame.to_local(wo),
+        );
+        assert!(
+            f.iter().all(|x| x.is_finite() && *x >= 0.0),
+            "{model}: {f:?}"
+        );
+        assert!(
+            scene.emitted(&point, wo).iter().all(|x| x.is_finite()),
+            "{model}"
+        );
     }
     assert!(hits > 20, "{model}: {hits} hits");
 }

@@ -11,7 +11,12 @@ fn material(spec: &str) -> Material {
 
 /// A texture of two texels side by side.
 fn two(left: [u8; 4], right: [u8; 4], transfer: Transfer) -> Texture {
-    let image = RawImage { width: 2, height: 1, data: RawData::U8(vec![left, right]), has_alpha: true };
+    let image = RawImage {
+        width: 2,
+        height: 1,
+        data: RawData::U8(vec![left, right]),
+        has_alpha: true,
+    };
     let mut texture = Texture::new(Arc::new(Bitmap::new("two", image)), transfer);
     texture.filter = Filter::Nearest;
     texture
@@ -40,22 +45,45 @@ fn reflectance(shading: &Shading) -> [f32; 3] {
 }
 
 fn near(a: [f32; 3], b: [f32; 3], tolerance: f32) {
-    assert!(a.iter().zip(b).all(|(x, y)| (x - y).abs() <= tolerance), "{a:?} is not {b:?}");
+    assert!(
+        a.iter().zip(b).all(|(x, y)| (x - y).abs() <= tolerance),
+        "{a:?} is not {b:?}"
+    );
 }
 
 #[test]
 fn textures_and_vertex_colours_multiply_the_parameter() {
     let mut m = material("lambertian:reflectance=0.8");
-    assert!(matches!(m.shade(&point(0.2), UP).model, std::borrow::Cow::Borrowed(_)), "nothing is copied without textures");
+    assert!(
+        matches!(
+            m.shade(&point(0.2), UP).model,
+            std::borrow::Cow::Borrowed(_)
+        ),
+        "nothing is copied without textures"
+    );
     let texture = two([255, 0, 0, 255], [0, 255, 51, 255], Transfer::Linear);
-    m.bind_texture("reflectance", TextureInput::new(texture, Channels::Rgb)).unwrap();
-    near(reflectance(&m.shade(&point(0.2), UP)), [0.8, 0.0, 0.0], 1e-6);
-    near(reflectance(&m.shade(&point(0.7), UP)), [0.0, 0.8, 0.16], 1e-6);
+    m.bind_texture("reflectance", TextureInput::new(texture, Channels::Rgb))
+        .unwrap();
+    near(
+        reflectance(&m.shade(&point(0.2), UP)),
+        [0.8, 0.0, 0.0],
+        1e-6,
+    );
+    near(
+        reflectance(&m.shade(&point(0.7), UP)),
+        [0.0, 0.8, 0.16],
+        1e-6,
+    );
     near(m.shade(&point(0.7), UP).albedo, [0.0, 0.8, 0.16], 1e-6);
     m.bind_vertex_colour("reflectance").unwrap();
-    near(reflectance(&m.shade(&point(0.7), UP)), [0.0, 0.4, 0.04], 1e-6);
+    near(
+        reflectance(&m.shade(&point(0.7), UP)),
+        [0.0, 0.4, 0.04],
+        1e-6,
+    );
     assert_eq!(m.driven_parameters().collect::<Vec<_>>(), ["reflectance"]);
-    m.replace_model(&ModelSpec::parse("lambertian:reflectance=0.3").unwrap()).unwrap();
+    m.replace_model(&ModelSpec::parse("lambertian:reflectance=0.3").unwrap())
+        .unwrap();
     near(reflectance(&m.shade(&point(0.7), UP)), [0.3; 3], 1e-6);
 }
 
@@ -74,10 +102,18 @@ fn textured_values_stay_in_range() {
 #[test]
 fn unknown_parameters_are_guessed() {
     let texture = || TextureInput::new(two([0; 4], [0; 4], Transfer::Linear), Channels::Rgb);
-    let error = material("lambertian").bind_texture("reflectence", texture()).unwrap_err();
+    let error = material("lambertian")
+        .bind_texture("reflectence", texture())
+        .unwrap_err();
     assert!(error.to_string().contains("reflectence"), "{error}");
-    assert!(error.help().unwrap().contains("reflectance"), "{:?}", error.help());
-    let error = material("torrance-sparrow").bind_texture("distribution", texture()).unwrap_err();
+    assert!(
+        error.help().unwrap().contains("reflectance"),
+        "{:?}",
+        error.help()
+    );
+    let error = material("torrance-sparrow")
+        .bind_texture("distribution", texture())
+        .unwrap_err();
     assert!(error.to_string().contains("distribution"), "{error}");
 }
 
@@ -86,18 +122,40 @@ fn a_normal_map_tilts_the_frame() {
     let mut m = material("lambertian");
     // 255, 128, 255 is (1, 0.004, 1): 45° towards the tangent. The flat texel (128, 128, 255) leaves the normal, but for
     // the quarter of a degree that 128/255 misses ½ by.
-    m.normal_map = Some(NormalMap { texture: two([255, 128, 255, 255], [128, 128, 255, 255], Transfer::Linear), scale: 1.0 });
+    m.normal_map = Some(NormalMap {
+        texture: two([255, 128, 255, 255], [128, 128, 255, 255], Transfer::Linear),
+        scale: 1.0,
+    });
     let h = std::f32::consts::FRAC_1_SQRT_2;
-    near(m.shade(&point(0.2), UP).frame.n.to_array(), [h, 0.0, h], 5e-3);
-    near(m.shade(&point(0.7), UP).frame.n.to_array(), [0.0, 0.0, 1.0], 6e-3);
+    near(
+        m.shade(&point(0.2), UP).frame.n.to_array(),
+        [h, 0.0, h],
+        5e-3,
+    );
+    near(
+        m.shade(&point(0.7), UP).frame.n.to_array(),
+        [0.0, 0.0, 1.0],
+        6e-3,
+    );
     // From behind all of it turns round.
-    near(m.shade(&point(0.2), -UP).frame.n.to_array(), [-h, 0.0, -h], 5e-3);
+    near(
+        m.shade(&point(0.2), -UP).frame.n.to_array(),
+        [-h, 0.0, -h],
+        5e-3,
+    );
     if let Some(map) = &mut m.normal_map {
         map.scale = 0.0;
     }
-    near(m.shade(&point(0.2), UP).frame.n.to_array(), [0.0, 0.0, 1.0], 1e-6);
+    near(
+        m.shade(&point(0.2), UP).frame.n.to_array(),
+        [0.0, 0.0, 1.0],
+        1e-6,
+    );
     // A map of nothing, (127.5, 127.5, 127.5), has no direction: the surface's own normal.
-    m.normal_map = Some(NormalMap { texture: two([0; 4], [0; 4], Transfer::Linear), scale: 0.0 });
+    m.normal_map = Some(NormalMap {
+        texture: two([0; 4], [0; 4], Transfer::Linear),
+        scale: 0.0,
+    });
     let n = m.shade(&point(0.2), UP).frame.n;
     assert!(n.is_finite() && n.dot(UP) > 0.0);
 }
@@ -106,7 +164,10 @@ fn a_normal_map_tilts_the_frame() {
 #[test]
 fn green_follows_the_bitangent() {
     let mut m = material("lambertian");
-    m.normal_map = Some(NormalMap { texture: two([128, 255, 255, 255], [0; 4], Transfer::Linear), scale: 1.0 });
+    m.normal_map = Some(NormalMap {
+        texture: two([128, 255, 255, 255], [0; 4], Transfer::Linear),
+        scale: 1.0,
+    });
     let mut p = point(0.2);
     assert!(m.shade(&p, UP).frame.n.y > 0.7);
     p.bitangent_sign = -1.0;
@@ -116,7 +177,10 @@ fn green_follows_the_bitangent() {
 #[test]
 fn a_grazing_viewer_of_a_steep_normal_gets_no_nan() {
     let mut m = material("gltf:roughness=0.2,metallic=1");
-    m.normal_map = Some(NormalMap { texture: two([0, 128, 140, 255], [255, 128, 140, 255], Transfer::Linear), scale: 1.0 });
+    m.normal_map = Some(NormalMap {
+        texture: two([0, 128, 140, 255], [255, 128, 140, 255], Transfer::Linear),
+        scale: 1.0,
+    });
     for u in [0.2, 0.7] {
         for x in [-1.0_f32, 1.0] {
             let wo = Vec3::new(x, 0.0, 0.01).normalize();
@@ -147,21 +211,45 @@ fn emission_has_sides_and_texture() {
 
 #[test]
 fn opacity_by_mode() {
-    let mut opacity = Opacity { factor: 0.8, ..Opacity::default() };
+    let mut opacity = Opacity {
+        factor: 0.8,
+        ..Opacity::default()
+    };
     assert_eq!(opacity.at(&point(0.2)), 1.0);
     opacity.mode = AlphaMode::Blend;
     assert_eq!(opacity.at(&point(0.2)), 0.8);
-    opacity.texture = Some(TextureInput::new(two([0, 0, 0, 255], [0, 0, 0, 51], Transfer::Srgb), Channels::Alpha));
-    assert!((opacity.at(&point(0.7)) - 0.16).abs() < 1e-6, "alpha is not decoded from sRGB");
+    opacity.texture = Some(TextureInput::new(
+        two([0, 0, 0, 255], [0, 0, 0, 51], Transfer::Srgb),
+        Channels::Alpha,
+    ));
+    assert!(
+        (opacity.at(&point(0.7)) - 0.16).abs() < 1e-6,
+        "alpha is not decoded from sRGB"
+    );
     opacity.vertex_alpha = true;
     assert!((opacity.at(&point(0.2)) - 0.4).abs() < 1e-6);
     opacity.mode = AlphaMode::Mask(0.4);
-    assert_eq!((opacity.at(&point(0.2)), opacity.at(&point(0.7))), (1.0, 0.0));
+    assert_eq!(
+        (opacity.at(&point(0.2)), opacity.at(&point(0.7))),
+        (1.0, 0.0)
+    );
 }
 
 /// A Lambertian surface reflects its reflectance; a mirror its own.
 #[test]
 fn albedo_is_what_comes_back() {
-    near(material("lambertian:reflectance=0.2/0.5/0.9").shade(&point(0.2), UP).albedo, [0.2, 0.5, 0.9], 1e-5);
-    near(material("mirror:reflectance=0.7").shade(&point(0.2), UP).albedo, [0.7; 3], 1e-5);
+    near(
+        material("lambertian:reflectance=0.2/0.5/0.9")
+            .shade(&point(0.2), UP)
+            .albedo,
+        [0.2, 0.5, 0.9],
+        1e-5,
+    );
+    near(
+        material("mirror:reflectance=0.7")
+            .shade(&point(0.2), UP)
+            .albedo,
+        [0.7; 3],
+        1e-5,
+    );
 }

@@ -15,7 +15,9 @@ pub(super) fn read(builder: &mut SceneBuilder, path: &Path) -> Result<(), SceneE
         let file = obj::read(path)?;
         if !file.libraries.is_empty() {
             let named = file.libraries.join(", ");
-            builder.warn(format!("material libraries are not read ({named}): the materials are grey"));
+            builder.warn(format!(
+                "material libraries are not read ({named}): the materials are grey"
+            ));
         }
         for part in file.parts {
             let name = part.material.as_deref().unwrap_or("default");
@@ -56,7 +58,10 @@ pub(super) fn shape(builder: &mut SceneBuilder, path: &Path) -> Result<u32, Scen
 
 /// The material of surfaces that say nothing about theirs: Lambertian, reflectance 0.5.
 pub(super) fn grey(name: &str) -> Result<Material, SceneError> {
-    Material::new(name, &ModelSpec::from_pairs("lambertian", [("reflectance", "0.5")])?)
+    Material::new(
+        name,
+        &ModelSpec::from_pairs("lambertian", [("reflectance", "0.5")])?,
+    )
 }
 
 #[cfg(test)]
@@ -67,26 +72,45 @@ mod tests {
     fn bare_meshes_are_scenes_of_named_grey_parts() {
         let folder = tempfile::tempdir().unwrap();
         let obj = folder.path().join("two.obj");
-        let text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 3 2\n";
+        let text =
+            "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 3 2\n";
         std::fs::write(&obj, text).unwrap();
         let scene = Scene::load(&obj, &LoadOptions::default()).unwrap();
-        assert_eq!((scene.name.as_str(), scene.material_names()), ("two", vec!["red", "blue"]));
-        assert!(scene.warnings.iter().any(|w| w.contains("a.mtl")), "{:?}", scene.warnings);
+        assert_eq!(
+            (scene.name.as_str(), scene.material_names()),
+            ("two", vec!["red", "blue"])
+        );
+        assert!(
+            scene.warnings.iter().any(|w| w.contains("a.mtl")),
+            "{:?}",
+            scene.warnings
+        );
 
         let ply = folder.path().join("one.ply");
         let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                     element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
         std::fs::write(&ply, text).unwrap();
         let scene = Scene::load(&ply, &LoadOptions::default()).unwrap();
-        assert_eq!((scene.geometry.triangle_count(), scene.material_names()), (1, vec!["default"]));
+        assert_eq!(
+            (scene.geometry.triangle_count(), scene.material_names()),
+            (1, vec!["default"])
+        );
 
         let toml = folder.path().join("both.toml");
-        let shapes = ["two.obj", "one.ply"].map(|f| format!("[[shape]]\nkind = \"mesh\"\nfile = \"{f}\"\n")).concat();
+        let shapes = ["two.obj", "one.ply"]
+            .map(|f| format!("[[shape]]\nkind = \"mesh\"\nfile = \"{f}\"\n"))
+            .concat();
         std::fs::write(&toml, shapes).unwrap();
         let scene = Scene::load(&toml, &LoadOptions::default()).unwrap();
-        assert_eq!((scene.geometry.triangle_count(), scene.materials.len()), (3, 1));
+        assert_eq!(
+            (scene.geometry.triangle_count(), scene.materials.len()),
+            (3, 1)
+        );
         std::fs::write(&toml, "[[shape]]\nkind = \"mesh\"\nfile = \"a.glb\"\n").unwrap();
         let error = Scene::load(&toml, &LoadOptions::default()).unwrap_err();
-        assert!(error.to_string().contains("both.toml:3:8") && error.help().unwrap().contains("gltf"), "{error}");
+        assert!(
+            error.to_string().contains("both.toml:3:8") && error.help().unwrap().contains("gltf"),
+            "{error}"
+        );
     }
 }

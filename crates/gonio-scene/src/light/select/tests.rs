@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Instance, Ray, SceneBuilder, Scene, Shape, TriangleMesh};
+use crate::{Instance, Ray, Scene, SceneBuilder, Shape, TriangleMesh};
 use gonio_brdf::ModelSpec;
 use gonio_num::{Affine3, Real};
 use gonio_radiometry::sequence::Rng;
@@ -7,7 +7,11 @@ use gonio_radiometry::sequence::Rng;
 const UP: Vec3<f32> = Vec3::new(0.0, 1.0, 0.0);
 
 fn glowing(radiance: f32, double_sided: bool) -> Material {
-    let mut material = Material::new("lamp", &ModelSpec::parse("lambertian:reflectance=0").unwrap()).unwrap();
+    let mut material = Material::new(
+        "lamp",
+        &ModelSpec::parse("lambertian:reflectance=0").unwrap(),
+    )
+    .unwrap();
     material.emission.radiance = [radiance; 3];
     material.double_sided = double_sided;
     material
@@ -51,23 +55,40 @@ fn irradiance(scene: &Scene, p: Vec3<f32>, name: &str, count: u32) -> (f64, f64)
                 LightTarget::Point(target) => !scene.occluded(&from.spawn_ray_to(target)),
                 LightTarget::Infinite => !scene.occluded(&from.spawn_ray(s.wi)),
             };
-            if open { f64::from(s.radiance[0]) * f64::from(s.wi.y.max(0.0)) / f64::from(s.pdf) } else { 0.0 }
+            if open {
+                f64::from(s.radiance[0]) * f64::from(s.wi.y.max(0.0)) / f64::from(s.pdf)
+            } else {
+                0.0
+            }
         });
         sum += value;
         squares += value * value;
     }
     let n = f64::from(count);
     let mean = sum / n;
-    (mean, ((squares / n - mean * mean).max(0.0) / (n - 1.0)).sqrt())
+    (
+        mean,
+        ((squares / n - mean * mean).max(0.0) / (n - 1.0)).sqrt(),
+    )
 }
 
 /// The t-test at 4.5 standard errors (two-sided false-positive rate 7e-6), with room for rounding where the estimator has next
 /// to no variance; and its negative control: 5 % more must fail.
 fn expect(scene: &Scene, p: Vec3<f32>, exact: f64, name: &str) {
-    let (mean, error) = irradiance(scene, p, name, 40_000);
+    expect_of(scene, p, exact, name, 40_000);
+}
+
+fn expect_of(scene: &Scene, p: Vec3<f32>, exact: f64, name: &str, count: u32) {
+    let (mean, error) = irradiance(scene, p, name, count);
     let bound = 4.5 * error + 2e-5 * exact;
-    assert!((mean - exact).abs() < bound, "{name}: {mean} ± {error}, exact {exact}");
-    assert!((mean - 1.05 * exact).abs() > bound, "{name}: the test can't tell 5 %: {mean} ± {error}");
+    assert!(
+        (mean - exact).abs() < bound,
+        "{name}: {mean} ± {error}, exact {exact}"
+    );
+    assert!(
+        (mean - 1.05 * exact).abs() > bound,
+        "{name}: the test can't tell 5 %: {mean} ± {error}"
+    );
 }
 
 /// Form factor of a parallel rectangle, one corner straight above the point: sides a and b, height h.
@@ -98,11 +119,18 @@ fn rectangle_light_has_the_form_factors_irradiance() {
 #[test]
 fn mesh_light_has_the_form_factors_irradiance() {
     let mesh = TriangleMesh {
-        positions: [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| Vec3::new(x, y, 0.0)).to_vec(),
+        positions: [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]| Vec3::new(x, y, 0.0))
+            .to_vec(),
         indices: vec![[0, 1, 2], [0, 2, 3]],
         ..TriangleMesh::default()
     };
-    let scene = lamp(Shape::Mesh(Arc::new(mesh)), ceiling(1.5, 0.8, 1.2), 3.0, false);
+    let scene = lamp(
+        Shape::Mesh(Arc::new(mesh)),
+        ceiling(1.5, 0.8, 1.2),
+        3.0,
+        false,
+    );
     let exact = PI * 3.0 * 4.0 * corner_factor(1.5, 0.8, 1.2);
     expect(&scene, Vec3::zero(), exact, "mesh light");
 }
@@ -121,7 +149,12 @@ fn sphere_light_has_the_closed_form_irradiance() {
         let m = Affine3::scale(Vec3::splat(r)).then(&Affine3::translation(Vec3::new(0.0, d, 0.0)));
         let scene = lamp(Shape::Sphere, m, 4.0, false);
         let s = f64::from(r) / f64::from(d);
-        expect(&scene, Vec3::zero(), PI * 4.0 * s * s, &format!("sphere light {r} {d}"));
+        expect(
+            &scene,
+            Vec3::zero(),
+            PI * 4.0 * s * s,
+            &format!("sphere light {r} {d}"),
+        );
     }
 }
 
@@ -129,9 +162,19 @@ fn sphere_light_has_the_closed_form_irradiance() {
 #[test]
 fn inside_a_shining_sphere_irradiance_is_pi() {
     let scene = lamp(Shape::Sphere, Affine3::scale(Vec3::splat(2.0)), 1.0, true);
-    expect(&scene, Vec3::new(0.4, 0.3, -0.5), PI, "inside a sphere");
+    // By area, a sample's value deviates by 1.7 times the mean: 5 % needs many.
+    expect_of(
+        &scene,
+        Vec3::new(0.4, 0.3, -0.5),
+        PI,
+        "inside a sphere",
+        250_000,
+    );
     let one_sided = lamp(Shape::Sphere, Affine3::scale(Vec3::splat(2.0)), 1.0, false);
-    assert_eq!(irradiance(&one_sided, Vec3::zero(), "outside shines", 100).0, 0.0);
+    assert_eq!(
+        irradiance(&one_sided, Vec3::zero(), "outside shines", 100).0,
+        0.0
+    );
 }
 
 /// An ellipsoid whose axis of revolution is vertical and through the point. Scaling all heights and the receiver's distance
@@ -143,16 +186,31 @@ fn ellipsoid_light_has_its_cones_irradiance() {
     let m = Affine3::scale(Vec3::new(a, c, a)).then(&Affine3::translation(Vec3::new(0.0, d, 0.0)));
     let scene = lamp(Shape::Sphere, m, 2.0, false);
     let t2 = f64::from(a * a) / (f64::from(d).powi(2) - f64::from(c).powi(2));
-    expect(&scene, Vec3::zero(), PI * 2.0 * t2 / (1.0 + t2), "ellipsoid light");
+    expect(
+        &scene,
+        Vec3::zero(),
+        PI * 2.0 * t2 / (1.0 + t2),
+        "ellipsoid light",
+    );
 }
 
 #[test]
 fn a_one_sided_light_is_dark_from_behind() {
     let scene = lamp(Shape::Rectangle, ceiling(1.0, 1.0, 1.0), 1.0, false);
-    assert_eq!(irradiance(&scene, Vec3::new(0.0, 2.0, 0.0), "behind", 200).0, 0.0);
+    assert_eq!(
+        irradiance(&scene, Vec3::new(0.0, 2.0, 0.0), "behind", 200).0,
+        0.0
+    );
     let both = lamp(Shape::Rectangle, ceiling(1.0, 1.0, 1.0), 1.0, true);
     let mut rng = Rng::from_name("behind, both sides");
-    let s = both.lights.sample(&here(Vec3::new(0.0, 2.0, 0.0)), 0.5, [rng.next_f32(), rng.next_f32()]).unwrap();
+    let s = both
+        .lights
+        .sample(
+            &here(Vec3::new(0.0, 2.0, 0.0)),
+            0.5,
+            [rng.next_f32(), rng.next_f32()],
+        )
+        .unwrap();
     assert!(s.wi.y < 0.0 && s.radiance == [1.0; 3]);
 }
 
@@ -164,9 +222,19 @@ fn many() -> (Scene, f64) {
     builder.instance(rectangle, ceiling(0.4, 0.2, 1.0), lamp);
     let sphere = builder.shape(Shape::Sphere);
     let at = Vec3::new(2.0, 2.0, 0.0);
-    builder.instance(sphere, Affine3::scale(Vec3::splat(0.3)).then(&Affine3::translation(at)), lamp);
-    builder.light(Light::Point { position: Vec3::new(0.0, 3.0, -3.0), intensity: [9.0; 3] });
-    builder.light(Light::Directional { direction: Vec3::new(0.6, -0.8, 0.0), irradiance: [0.5; 3] });
+    builder.instance(
+        sphere,
+        Affine3::scale(Vec3::splat(0.3)).then(&Affine3::translation(at)),
+        lamp,
+    );
+    builder.light(Light::Point {
+        position: Vec3::new(0.0, 3.0, -3.0),
+        intensity: [9.0; 3],
+    });
+    builder.light(Light::Directional {
+        direction: Vec3::new(0.6, -0.8, 0.0),
+        irradiance: [0.5; 3],
+    });
     builder.environment(Environment::uniform([0.2; 3]));
     let rectangle = 4.0 * corner_factor(0.4, 0.2, 1.0);
     // A sphere wholly above the horizon, at angle θ: E = π L (r/d)² cosθ, here d² = 8, cosθ = 1/√2.
@@ -174,7 +242,8 @@ fn many() -> (Scene, f64) {
     // A point at (0, 3, −3): E = I cosθ/r² with r² = 18, cosθ = 1/√2.
     let point = 9.0 / 18.0 * std::f64::consts::FRAC_1_SQRT_2;
     // The lamps hide their share of the sky.
-    let exact = PI * 3.0 * (rectangle + ball) + point + 0.5 * 0.8 + PI * 0.2 * (1.0 - rectangle - ball);
+    let exact =
+        PI * 3.0 * (rectangle + ball) + point + 0.5 * 0.8 + PI * 0.2 * (1.0 - rectangle - ball);
     (builder.build().unwrap(), exact)
 }
 
@@ -182,7 +251,9 @@ fn many() -> (Scene, f64) {
 fn choosing_among_lights_sums_over_them() {
     let (scene, exact) = many();
     expect(&scene, Vec3::zero(), exact, "many lights");
-    let total: f64 = (0..scene.lights.len() as u32).map(|i| f64::from(scene.lights.probability(i))).sum();
+    let total: f64 = (0..scene.lights.len() as u32)
+        .map(|i| f64::from(scene.lights.probability(i)))
+        .sum();
     assert!((total - 1.0).abs() < 1e-6, "{total}");
     let delta = scene.lights.each().filter(LightRef::is_delta).count();
     assert_eq!((scene.lights.len(), delta), (5, 2));
@@ -205,7 +276,11 @@ fn each_light_alone_adds_up_too() {
                     LightTarget::Point(target) => from.spawn_ray_to(target),
                     LightTarget::Infinite => from.spawn_ray(s.wi),
                 };
-                let seen = if scene.occluded(&ray) { 0.0 } else { f64::from(s.radiance[0]) };
+                let seen = if scene.occluded(&ray) {
+                    0.0
+                } else {
+                    f64::from(s.radiance[0])
+                };
                 seen * f64::from(s.wi.y.max(0.0)) / f64::from(s.pdf)
             });
             mean += value / f64::from(count);
@@ -215,19 +290,28 @@ fn each_light_alone_adds_up_too() {
         variance += (squares - mean * mean).max(0.0) / f64::from(count);
     }
     let bound = 4.5 * variance.sqrt() + 2e-5 * exact;
-    assert!((sum - exact).abs() < bound, "{sum} ± {}, exact {exact}", variance.sqrt());
+    assert!(
+        (sum - exact).abs() < bound,
+        "{sum} ± {}, exact {exact}",
+        variance.sqrt()
+    );
     assert!((sum - 1.05 * exact).abs() > bound);
 }
 
 /// What a ray along the sampled direction finds has the density that the sample claims: multiple importance sampling
-/// rests on it. The hit's position differs from the sample's by rounding (1e-6 relative), which the squared distance and the
-/// cosine at grazing emission magnify: 1e-3.
+/// rests on it. The hit's position differs from the sample's by rounding (a few 1e-7 of the distance). Where light leaves at a
+/// cosine c, the cosine in the density changes by that over c², so by less than 1e-4 of itself for c ≥ 0.1: 1e-3 has room.
 #[test]
 fn sampled_and_found_densities_agree() {
     let (scene, _) = many();
     let forms = [
         lamp(Shape::Disk, ceiling(0.7, 0.5, 1.0), 2.0, true),
-        lamp(Shape::Sphere, Affine3::scale(Vec3::new(0.4, 0.2, 0.3)).then(&Affine3::translation(UP)), 2.0, false),
+        lamp(
+            Shape::Sphere,
+            Affine3::scale(Vec3::new(0.4, 0.2, 0.3)).then(&Affine3::translation(UP)),
+            2.0,
+            false,
+        ),
         lamp(Shape::Sphere, Affine3::scale(Vec3::splat(2.0)), 1.0, true),
         scene,
     ];
@@ -237,12 +321,16 @@ fn sampled_and_found_densities_agree() {
         let from = here(Vec3::zero());
         for _ in 0..2_000 {
             let (select, u) = (rng.next_f32(), [rng.next_f32(), rng.next_f32()]);
-            let Some(s) = scene.lights.sample(&from, select, u) else { continue };
+            let Some(s) = scene.lights.sample(&from, select, u) else {
+                continue;
+            };
             if s.delta {
                 continue;
             }
             let found = match (scene.intersect(&Ray::new(from.p, s.wi)), s.target) {
-                (Some(hit), LightTarget::Point(p)) if (hit.p - p).length() < 1e-3 => {
+                (Some(hit), LightTarget::Point(p))
+                    if (hit.p - p).length() < 1e-3 && hit.ng.dot(s.wi).abs() > 0.1 =>
+                {
                     assert_eq!(scene.emitted(&hit, -s.wi), s.radiance);
                     scene.lights.pdf_area(from.p, &hit, s.wi)
                 }
@@ -250,7 +338,11 @@ fn sampled_and_found_densities_agree() {
                 // Past the rim of the light by rounding, or on its far side.
                 _ => continue,
             };
-            assert!((found / s.pdf - 1.0).abs() < 1e-3, "form {k}: {found} for {}", s.pdf);
+            assert!(
+                (found / s.pdf - 1.0).abs() < 1e-3,
+                "form {k}: {found} for {}",
+                s.pdf
+            );
             compared += 1;
         }
     }
@@ -259,14 +351,25 @@ fn sampled_and_found_densities_agree() {
 
 #[test]
 fn lights_without_power_are_never_chosen() {
-    assert_eq!(probabilities(&[0.0, 3.0, f64::NAN, 1.0]), [0.0, 0.625, 0.0, 0.375]);
+    assert_eq!(
+        probabilities(&[0.0, 3.0, f64::NAN, 1.0]),
+        [0.0, 0.625, 0.0, 0.375]
+    );
     assert_eq!(probabilities(&[]), [0.0; 0]);
     let mut builder = SceneBuilder::new("black");
-    builder.light(Light::Point { position: UP, intensity: [0.0; 3] });
+    builder.light(Light::Point {
+        position: UP,
+        intensity: [0.0; 3],
+    });
     builder.environment(Environment::uniform([0.0; 3]));
     let scene = builder.build().unwrap();
     assert!(scene.lights.is_empty() && scene.lights.len() == 2);
-    assert!(scene.lights.sample(&here(Vec3::zero()), 0.3, [0.5; 2]).is_none());
+    assert!(
+        scene
+            .lights
+            .sample(&here(Vec3::zero()), 0.3, [0.5; 2])
+            .is_none()
+    );
     assert_eq!(scene.lights.pdf_environment(UP), 0.0);
 }
 
@@ -280,7 +383,11 @@ fn other_surfaces_have_no_density() {
     hit.p = Vec3::new(0.0, 1.0, 0.0);
     hit.ng = -UP;
     assert!(scene.lights.pdf_area(Vec3::zero(), &hit, UP) > 0.0);
-    assert_eq!(scene.lights.pdf_area(Vec3::new(0.0, 2.0, 0.0), &hit, -UP), 0.0, "from behind");
+    assert_eq!(
+        scene.lights.pdf_area(Vec3::new(0.0, 2.0, 0.0), &hit, -UP),
+        0.0,
+        "from behind"
+    );
     let placed: &Instance = &scene.geometry.instances()[0];
     assert_eq!(placed.area_light, Some(2));
 }

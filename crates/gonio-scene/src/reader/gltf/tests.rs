@@ -88,9 +88,17 @@ fn refused(change: impl FnOnce(&mut Value), bin: &[u8]) -> SceneError {
 fn a_triangle_is_read_in_all_containers() {
     let folder = Folder::new();
     let scene = folder.load(&document(|_| ()), &sound()).unwrap();
-    assert_eq!((scene.geometry.triangle_count(), scene.material_names()), (1, vec!["paint"]));
+    assert_eq!(
+        (scene.geometry.triangle_count(), scene.material_names()),
+        (1, vec!["paint"])
+    );
     assert_eq!(scene.name, "a");
-    let hit = scene.intersect(&Ray::new(Vec3::new(0.25, 0.25, 1.0), Vec3::new(0.0, 0.0, -1.0))).unwrap();
+    let hit = scene
+        .intersect(&Ray::new(
+            Vec3::new(0.25, 0.25, 1.0),
+            Vec3::new(0.0, 0.0, -1.0),
+        ))
+        .unwrap();
     assert_eq!(hit.ng, Vec3::new(0.0, 0.0, 1.0));
     assert!((hit.uv[0] - 0.25).abs() < 1e-6 && (hit.uv[1] - 0.75).abs() < 1e-6);
 
@@ -107,7 +115,9 @@ fn a_triangle_is_read_in_all_containers() {
             [18, 12, 6, 0].map(|s| char::from(DIGITS[(n >> s & 63) as usize]))
         })
         .collect();
-    let inline = document(|d| d["buffers"][0]["uri"] = json!(format!("data:application/octet-stream;base64,{text}")));
+    let inline = document(|d| {
+        d["buffers"][0]["uri"] = json!(format!("data:application/octet-stream;base64,{text}"))
+    });
     let path = folder.write("c.gltf", inline.to_string().as_bytes());
     assert_eq!(load(&path).unwrap().geometry.triangle_count(), 1);
 }
@@ -118,7 +128,12 @@ fn negative_scale_keeps_the_outside() {
     let folder = Folder::new();
     let mirrored = document(|d| d["nodes"][0]["scale"] = json!([-1, 1, 1]));
     let scene = folder.load(&mirrored, &sound()).unwrap();
-    let hit = scene.intersect(&Ray::new(Vec3::new(-0.25, 0.25, 1.0), Vec3::new(0.0, 0.0, -1.0))).unwrap();
+    let hit = scene
+        .intersect(&Ray::new(
+            Vec3::new(-0.25, 0.25, 1.0),
+            Vec3::new(0.0, 0.0, -1.0),
+        ))
+        .unwrap();
     assert_eq!(hit.ng, Vec3::new(0.0, 0.0, 1.0));
 }
 
@@ -132,7 +147,12 @@ fn nodes_share_a_mesh_and_multiply_transforms() {
     });
     let scene = folder.load(&tree, &sound()).unwrap();
     assert_eq!(scene.geometry.shapes().len(), 1);
-    let at: Vec<_> = scene.geometry.instances().iter().map(|i| i.to_world.transform_point(Vec3::new(1.0, 0.0, 0.0))).collect();
+    let at: Vec<_> = scene
+        .geometry
+        .instances()
+        .iter()
+        .map(|i| i.to_world.transform_point(Vec3::new(1.0, 0.0, 0.0)))
+        .collect();
     assert_eq!(at, [Vec3::new(11.0, 5.0, 0.0), Vec3::new(12.0, 0.0, 0.0)]);
 }
 
@@ -165,16 +185,39 @@ fn materials_lights_and_cameras_are_mapped() {
     let material = &scene.materials[0];
     assert!(material.double_sided && !material.opacity.is_opaque());
     assert_eq!(material.emission.radiance, [8.0, 4.0, 0.0]);
-    assert_eq!(material.spec().to_string(), "gltf:base_color=0.20000000298023224/0.4000000059604645/0.6000000238418579,ior=1.3300000429153442,metallic=0,roughness=0.30000001192092896");
+    assert_eq!(
+        material.spec().to_string(),
+        "gltf:base_color=0.20000000298023224/0.4000000059604645/0.6000000238418579,ior=1.3300000429153442,metallic=0,roughness=0.30000001192092896"
+    );
     let lights: Vec<_> = scene.lights.iter().collect();
-    assert!(matches!(lights[0], Light::Point { position, intensity } if position.y == 7.0 && *intensity == [3.0, 0.0, 0.0]));
-    assert!(matches!(lights[1], Light::Directional { direction, irradiance } if direction.z == -1.0 && *irradiance == [2.0; 3]));
+    assert!(
+        matches!(lights[0], Light::Point { position, intensity } if position.y == 7.0 && *intensity == [3.0, 0.0, 0.0])
+    );
+    assert!(
+        matches!(lights[1], Light::Directional { direction, irradiance } if direction.z == -1.0 && *irradiance == [2.0; 3])
+    );
     assert!(matches!(lights[2], Light::Spot { .. }));
-    assert!(matches!(lights[3], Light::Area { instance: 0, two_sided: true, .. }));
-    let names: Vec<_> = scene.cameras.iter().map(|c| (c.name.as_str(), c.aspect)).collect();
+    assert!(matches!(
+        lights[3],
+        Light::Area {
+            instance: 0,
+            two_sided: true,
+            ..
+        }
+    ));
+    let names: Vec<_> = scene
+        .cameras
+        .iter()
+        .map(|c| (c.name.as_str(), c.aspect))
+        .collect();
     assert_eq!(names, [("eye", Some(1.5)), ("flat", Some(2.0))]);
     let all = scene.warnings.join("\n");
-    assert!(all.contains("KHR_materials_sheen is not mapped: 1 material is") && all.contains("EXT_odd") && all.contains("1 cd"), "{all}");
+    assert!(
+        all.contains("KHR_materials_sheen is not mapped: 1 material is")
+            && all.contains("EXT_odd")
+            && all.contains("1 cd"),
+        "{all}"
+    );
 }
 
 #[test]
@@ -186,14 +229,25 @@ fn the_camera_is_chosen_by_name_or_index() {
     });
     let path = folder.write("a.glb", &glb(&two, &sound()));
     let first = |choice: &str| {
-        let options = LoadOptions { camera: Some(choice.into()), ..LoadOptions::default() };
+        let options = LoadOptions {
+            camera: Some(choice.into()),
+            ..LoadOptions::default()
+        };
         Scene::load(&path, &options).map(|s| s.cameras[0].name.clone())
     };
     assert_eq!(first("right").unwrap(), "right");
     assert_eq!(first("1").unwrap(), "right");
     assert_eq!(first("0").unwrap(), "left");
-    assert_eq!(first("rigth").unwrap_err().help().unwrap(), "did you mean `right`?");
-    assert!(first("2").unwrap_err().to_string().contains("no camera `2`"));
+    assert_eq!(
+        first("rigth").unwrap_err().help().unwrap(),
+        "did you mean `right`?"
+    );
+    assert!(
+        first("2")
+            .unwrap_err()
+            .to_string()
+            .contains("no camera `2`")
+    );
 }
 
 #[test]
@@ -206,41 +260,76 @@ fn points_and_lines_are_skipped_with_a_warning() {
     });
     let scene = folder.load(&mixed, &sound()).unwrap();
     assert_eq!(scene.geometry.triangle_count(), 1);
-    assert_eq!(scene.warnings.iter().filter(|w| w.contains("skipped")).count(), 2, "{:?}", scene.warnings);
-    let none = document(|d| d["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": 0}, "mode": 0}]));
-    assert!(matches!(folder.load(&none, &sound()).unwrap_err(), SceneError::Empty { .. }));
+    assert_eq!(
+        scene
+            .warnings
+            .iter()
+            .filter(|w| w.contains("skipped"))
+            .count(),
+        2,
+        "{:?}",
+        scene.warnings
+    );
+    let none = document(|d| {
+        d["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": 0}, "mode": 0}])
+    });
+    assert!(matches!(
+        folder.load(&none, &sound()).unwrap_err(),
+        SceneError::Empty { .. }
+    ));
 }
 
 #[test]
 fn bad_documents_are_refused_by_place() {
     let bin = sound();
     for (says, change) in [
-        ("index below 3", (|d| d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(9)) as fn(&mut Value)),
-        ("accessor 1", |d| d["accessors"][1]["count"] = json!(4_000_000_000_u64)),
-        ("accessor 1", |d| d["accessors"][1]["componentType"] = json!(5126)),
-        ("bufferView 0", |d| d["bufferViews"][0]["byteOffset"] = json!(60)),
+        (
+            "index below 3",
+            (|d| d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(9))
+                as fn(&mut Value),
+        ),
+        ("accessor 1", |d| {
+            d["accessors"][1]["count"] = json!(4_000_000_000_u64)
+        }),
+        ("accessor 1", |d| {
+            d["accessors"][1]["componentType"] = json!(5126)
+        }),
+        ("bufferView 0", |d| {
+            d["bufferViews"][0]["byteOffset"] = json!(60)
+        }),
         ("buffer 0", |d| d["buffers"][0]["byteLength"] = json!(100)),
         ("limit", |d| d["buffers"][0]["byteLength"] = json!(u64::MAX)),
         ("node 3", |d| d["scenes"][0]["nodes"] = json!([3])),
         ("reached twice", |d| d["nodes"][0]["children"] = json!([0])),
         ("mesh 5", |d| d["nodes"][0]["mesh"] = json!(5)),
-        ("material 7", |d| d["meshes"][0]["primitives"][0]["material"] = json!(7)),
+        ("material 7", |d| {
+            d["meshes"][0]["primitives"][0]["material"] = json!(7)
+        }),
         ("scene 4", |d| d["scene"] = json!(4)),
-        ("unknown mode", |d| d["meshes"][0]["primitives"][0]["mode"] = json!(77)),
-        ("2 texture coordinates for 3", |d| d["accessors"][2]["count"] = json!(2)),
+        ("unknown mode", |d| {
+            d["meshes"][0]["primitives"][0]["mode"] = json!(77)
+        }),
+        ("2 texture coordinates for 3", |d| {
+            d["accessors"][2]["count"] = json!(2)
+        }),
         ("version 1.0", |d| d["asset"]["version"] = json!("1.0")),
         ("no version", |d| d["asset"] = json!({})),
         ("JSON, line 1", |d| d["nodes"] = json!("none")),
-        ("texture 0", |d| d["materials"][0]["normalTexture"] = json!({"index": 0})),
+        ("texture 0", |d| {
+            d["materials"][0]["normalTexture"] = json!({"index": 0})
+        }),
         ("camera 2", |d| d["nodes"][0]["camera"] = json!(2)),
-        ("finite", |d| d["nodes"][0]["translation"] = json!([1e39, 0, 0])),
+        ("finite", |d| {
+            d["nodes"][0]["translation"] = json!([1e39, 0, 0])
+        }),
         ("field of view", |d| {
             d["nodes"][0]["camera"] = json!(0);
             d["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 9, "znear": 1}}]);
         }),
         ("color × intensity", |d| {
             d["nodes"][0]["extensions"] = json!({"KHR_lights_punctual": {"light": 0}});
-            d["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": -1}]}});
+            d["extensions"] =
+                json!({"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": -1}]}});
         }),
     ] {
         let error = refused(change, &bin).to_string();
@@ -253,9 +342,15 @@ fn bad_vertices_are_refused_by_place() {
     let mut corners = CORNERS;
     corners[4] = f32::NAN;
     let error = refused(|_| (), &bytes(corners, [0, 1, 2])).to_string();
-    assert!(error.contains("mesh 0, primitive 0, vertex 1") && error.contains("NaN"), "{error}");
+    assert!(
+        error.contains("mesh 0, primitive 0, vertex 1") && error.contains("NaN"),
+        "{error}"
+    );
     let error = refused(|_| (), &bytes(CORNERS, [0, 1, 3])).to_string();
-    assert!(error.contains("index 2") && error.contains("found 3"), "{error}");
+    assert!(
+        error.contains("index 2") && error.contains("found 3"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -264,7 +359,10 @@ fn missing_files_are_named() {
     let no_bin = document(|d| d["buffers"][0]["uri"] = json!("gone.bin"));
     let path = folder.write("a.gltf", no_bin.to_string().as_bytes());
     let error = load(&path).unwrap_err();
-    assert!(matches!(&error, SceneError::Io { path, .. } if path.ends_with("gone.bin")), "{error}");
+    assert!(
+        matches!(&error, SceneError::Io { path, .. } if path.ends_with("gone.bin")),
+        "{error}"
+    );
     let textured = |uri: Value| {
         document(move |d| {
             d["materials"][0] = json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}});
@@ -272,14 +370,32 @@ fn missing_files_are_named() {
             d["images"] = json!([uri]);
         })
     };
-    let error = folder.load(&textured(json!({"uri": "gone.png"})), &sound()).unwrap_err();
-    assert!(matches!(&error, SceneError::Io { path, .. } if path.ends_with("gone.png")), "{error}");
+    let error = folder
+        .load(&textured(json!({"uri": "gone.png"})), &sound())
+        .unwrap_err();
+    assert!(
+        matches!(&error, SceneError::Io { path, .. } if path.ends_with("gone.png")),
+        "{error}"
+    );
     folder.write("broken.png", b"\x89PNG\r\n\x1a\nbroken");
-    let error = folder.load(&textured(json!({"uri": "broken.png"})), &sound()).unwrap_err();
-    assert!(matches!(error, SceneError::Image { .. }) && error.to_string().contains("image 0 (broken.png)"), "{error}");
-    let error = folder.load(&textured(json!({"uri": "https://example.org/a.png"})), &sound()).unwrap_err();
+    let error = folder
+        .load(&textured(json!({"uri": "broken.png"})), &sound())
+        .unwrap_err();
+    assert!(
+        matches!(error, SceneError::Image { .. })
+            && error.to_string().contains("image 0 (broken.png)"),
+        "{error}"
+    );
+    let error = folder
+        .load(
+            &textured(json!({"uri": "https://example.org/a.png"})),
+            &sound(),
+        )
+        .unwrap_err();
     assert!(error.to_string().contains("nothing is fetched"), "{error}");
-    let error = load(&folder.0.path().join("none.glb")).unwrap_err().to_string();
+    let error = load(&folder.0.path().join("none.glb"))
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("none.glb"), "{error}");
     let error = load(&folder.write("a.fbx", b"")).unwrap_err();
     assert!(error.help().unwrap().contains(".glb"), "{error}");
@@ -287,8 +403,14 @@ fn missing_files_are_named() {
 
 #[test]
 fn required_extensions_are_named() {
-    let draco = refused(|d| d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]), &sound());
-    assert!(draco.to_string().contains("KHR_draco_mesh_compression"), "{draco}");
+    let draco = refused(
+        |d| d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]),
+        &sound(),
+    );
+    assert!(
+        draco.to_string().contains("KHR_draco_mesh_compression"),
+        "{draco}"
+    );
     assert!(draco.help().unwrap().contains("without mesh compression"));
     let folder = Folder::new();
     let coat = document(|d| {
@@ -296,7 +418,12 @@ fn required_extensions_are_named() {
         d["extensionsRequired"] = json!(["KHR_materials_clearcoat"]);
     });
     let scene = folder.load(&coat, &sound()).unwrap();
-    assert!(scene.warnings.iter().any(|w| w.contains("KHR_materials_clearcoat") && w.contains("required")));
+    assert!(
+        scene
+            .warnings
+            .iter()
+            .any(|w| w.contains("KHR_materials_clearcoat") && w.contains("required"))
+    );
 }
 
 /// Every truncation, and 2,000 documents with one byte changed: an error or a scene, never a panic.

@@ -5,7 +5,9 @@ use gonio_num::Vec3;
 /// Loads a scene file with this text, beside a texture `red.png`.
 fn load(text: &str) -> Result<Scene, SceneError> {
     let folder = tempfile::tempdir().unwrap();
-    Image::filled(4, 2, [1.0, 0.0, 0.0]).write(&folder.path().join("red.png")).unwrap();
+    Image::filled(4, 2, [1.0, 0.0, 0.0])
+        .write(&folder.path().join("red.png"))
+        .unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, text).unwrap();
     Scene::load(&path, &LoadOptions::default())
@@ -16,7 +18,10 @@ fn refused(text: &str) -> (String, String) {
     let error = load(text).unwrap_err();
     let message = error.to_string();
     assert!(matches!(error, SceneError::Description { .. }), "{message}");
-    assert!(message.contains("scene.toml:") && message.contains(" | ") && message.contains('^'), "{message}");
+    assert!(
+        message.contains("scene.toml:") && message.contains(" | ") && message.contains('^'),
+        "{message}"
+    );
     (message, error.help().unwrap_or_default())
 }
 
@@ -84,42 +89,97 @@ outer_deg = 20
 "##,
     )
     .unwrap();
-    assert_eq!((scene.name.as_str(), scene.film_size), ("still life", Some([640, 360])));
+    assert_eq!(
+        (scene.name.as_str(), scene.film_size),
+        ("still life", Some([640, 360]))
+    );
     assert_eq!(scene.material_names(), ["paint", "gold", "lamp"]);
     let lens = scene.cameras[0].projection;
-    assert!(matches!(lens, Projection::ThinLens { focus_distance, .. } if focus_distance == 5.0), "{lens:?}");
+    assert!(
+        matches!(lens, Projection::ThinLens { focus_distance, .. } if focus_distance == 5.0),
+        "{lens:?}"
+    );
     let at = |i: usize, p: Vec3<f32>| scene.geometry.instances()[i].to_world.transform_point(p);
     // A quarter turn about y takes +x to −z.
     assert!((at(0, Vec3::new(1.0, 0.0, 0.0)) - Vec3::new(1.0, 2.0, 2.5)).length() < 1e-6);
     assert_eq!(at(1, Vec3::zero()), Vec3::new(0.0, 7.0, 1.0));
     assert_eq!(at(2, Vec3::new(1.0, 0.0, 0.0)), Vec3::new(2.0, 7.0, 2.0));
-    assert!((at(3, Vec3::new(0.0, 0.0, 1.0)) - Vec3::new(0.0, 3.0, 0.0)).length() < 1e-6, "its normal points down");
+    assert!(
+        (at(3, Vec3::new(0.0, 0.0, 1.0)) - Vec3::new(0.0, 3.0, 0.0)).length() < 1e-6,
+        "its normal points down"
+    );
     let kinds: Vec<_> = scene.lights.iter().collect();
-    assert!(matches!(kinds[..], [Light::Point { .. }, Light::Directional { .. }, Light::Spot { .. }, Light::Area { .. }, Light::Environment(_)]));
-    assert!(matches!(kinds[1], Light::Directional { direction, .. } if *direction == Vec3::new(0.0, -1.0, 0.0)));
-    assert_eq!(scene.lights.environment().unwrap().radiance(Vec3::new(1.0, 0.0, 0.0)), [0.2, 0.4, 0.6]);
+    assert!(matches!(
+        kinds[..],
+        [
+            Light::Point { .. },
+            Light::Directional { .. },
+            Light::Spot { .. },
+            Light::Area { .. },
+            Light::Environment(_)
+        ]
+    ));
+    assert!(
+        matches!(kinds[1], Light::Directional { direction, .. } if *direction == Vec3::new(0.0, -1.0, 0.0))
+    );
+    assert_eq!(
+        scene
+            .lights
+            .environment()
+            .unwrap()
+            .radiance(Vec3::new(1.0, 0.0, 0.0)),
+        [0.2, 0.4, 0.6]
+    );
     assert_eq!(scene.materials[2].emission.radiance, [5.0; 3]);
-    assert!(scene.has_transparency() && scene.materials[0].normal_map.as_ref().unwrap().scale == 0.5);
+    assert!(
+        scene.has_transparency() && scene.materials[0].normal_map.as_ref().unwrap().scale == 0.5
+    );
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
 }
 
 #[test]
 fn unknown_words_are_shown_and_guessed() {
     let (message, help) = refused("[camera]\neye = [0, 0, 1]\ntraget = [0, 0, 0]\n");
-    assert!(message.contains(":3:1: unknown key `traget` in [camera]\n  |\n3 | traget = [0, 0, 0]\n  | ^^^^^^"), "{message}");
+    assert!(
+        message.contains(
+            ":3:1: unknown key `traget` in [camera]\n  |\n3 | traget = [0, 0, 0]\n  | ^^^^^^"
+        ),
+        "{message}"
+    );
     assert_eq!(help, "did you mean `target`?");
     let (message, help) = refused("[enviroment]\nuniform = 1\n");
-    assert!(message.contains("`enviroment`") && help == "did you mean `environment`?", "{message}");
+    assert!(
+        message.contains("`enviroment`") && help == "did you mean `environment`?",
+        "{message}"
+    );
     let (message, help) = refused("[[material]]\nname = \"a\"\nmodel = \"lambertain\"\n");
-    assert!(message.contains(":3:9: ") && help == "did you mean `lambertian`?", "{message} {help}");
+    assert!(
+        message.contains(":3:9: ") && help == "did you mean `lambertian`?",
+        "{message} {help}"
+    );
     let (message, help) = refused("[[material]]\nname = \"a\"\nparams = { reflectence = 1 }\n");
-    assert!(message.contains(":3:12: ") && help == "did you mean `reflectance`?", "{message} {help}");
-    let (message, help) = refused("[[material]]\nname = \"a\"\ntextures = { reflectence = \"red.png\" }\n");
-    assert!(message.contains(":3:14: ") && help == "did you mean `reflectance`?", "{message} {help}");
-    let (message, help) = refused("[[material]]\nname = \"bronze\"\n[[shape]]\nkind = \"sphere\"\nmaterial = \"bronce\"\n");
-    assert!(message.contains("no material `bronce`") && help == "did you mean `bronze`?", "{message} {help}");
+    assert!(
+        message.contains(":3:12: ") && help == "did you mean `reflectance`?",
+        "{message} {help}"
+    );
+    let (message, help) =
+        refused("[[material]]\nname = \"a\"\ntextures = { reflectence = \"red.png\" }\n");
+    assert!(
+        message.contains(":3:14: ") && help == "did you mean `reflectance`?",
+        "{message} {help}"
+    );
+    let (message, help) = refused(
+        "[[material]]\nname = \"bronze\"\n[[shape]]\nkind = \"sphere\"\nmaterial = \"bronce\"\n",
+    );
+    assert!(
+        message.contains("no material `bronce`") && help == "did you mean `bronze`?",
+        "{message} {help}"
+    );
     let (message, help) = refused("[[shape]]\nkind = \"shpere\"\n");
-    assert!(message.contains("`shpere`") && help == "did you mean `sphere`?", "{message} {help}");
+    assert!(
+        message.contains("`shpere`") && help == "did you mean `sphere`?",
+        "{message} {help}"
+    );
     let (_, help) = refused("[[light]]\nkind = \"spot\"\npositoin = [0, 0, 0]\n");
     assert_eq!(help, "did you mean `position`?");
 }
@@ -127,35 +187,86 @@ fn unknown_words_are_shown_and_guessed() {
 #[test]
 fn wrong_values_are_shown() {
     for (text, says) in [
-        ("[camera]\neye = \"here\"\ntarget = [0, 0, 0]\n", "the text \"here\", expected 3 numbers"),
-        ("[camera]\neye = [0, nan, 1]\ntarget = [0, 0, 0]\n", "is NaN"),
-        ("[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]\n", "the same point"),
+        (
+            "[camera]\neye = \"here\"\ntarget = [0, 0, 0]\n",
+            "the text \"here\", expected 3 numbers",
+        ),
+        (
+            "[camera]\neye = [0, nan, 1]\ntarget = [0, 0, 0]\n",
+            "is NaN",
+        ),
+        (
+            "[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]\n",
+            "the same point",
+        ),
         ("[camera]\neye = [0, 0, 0]\n", "has no `target`"),
-        ("[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nfov_deg = 180\n", "from 0.01 to 179"),
-        ("[camera]\nkind = \"orthographic\"\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nfov_deg = 30\n", "no meaning here"),
+        (
+            "[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nfov_deg = 180\n",
+            "from 0.01 to 179",
+        ),
+        (
+            "[camera]\nkind = \"orthographic\"\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nfov_deg = 30\n",
+            "no meaning here",
+        ),
         ("[film]\nsize = [0, 10]\n", "whole numbers"),
         ("[film]\nsize = [10.5, 10]\n", "whole numbers"),
         ("[film]\nsize = [100000, 10]\n", "65536"),
         ("name = 3\n", "expected a text"),
         ("shape = 3\n", "expected a table"),
         ("[[shape]]\nkind = \"sphere\"\nscale = 0\n", "flattens"),
-        ("[[shape]]\nkind = \"sphere\"\nmatrix = [1, 2]\n", "expected 12 numbers"),
-        ("[[shape]]\nkind = \"sphere\"\nmatrix = [1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]\n", "last row"),
-        ("[[shape]]\nkind = \"sphere\"\nfile = \"a.ply\"\n", "no meaning here"),
+        (
+            "[[shape]]\nkind = \"sphere\"\nmatrix = [1, 2]\n",
+            "expected 12 numbers",
+        ),
+        (
+            "[[shape]]\nkind = \"sphere\"\nmatrix = [1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]\n",
+            "last row",
+        ),
+        (
+            "[[shape]]\nkind = \"sphere\"\nfile = \"a.ply\"\n",
+            "no meaning here",
+        ),
         ("[[shape]]\nkind = \"mesh\"\n", "has no `file`"),
-        ("[[shape]]\nkind = \"gltf\"\nfile = \"gone.glb\"\n", "gone.glb"),
+        (
+            "[[shape]]\nkind = \"gltf\"\nfile = \"gone.glb\"\n",
+            "gone.glb",
+        ),
         ("[environment]\nfile = \"gone.hdr\"\n", "gone.hdr"),
-        ("[environment]\nrotate_deg = 4\n", "needs `file` or `uniform`"),
+        (
+            "[environment]\nrotate_deg = 4\n",
+            "needs `file` or `uniform`",
+        ),
         ("[environment]\nuniform = -1\n", "none below 0"),
         ("[environment]\nuniform = 1\nfile = \"red.png\"\n", "both"),
-        ("[[material]]\nname = \"a\"\nparams = { reflectance = 2 }\n", "from 0 to 1"),
-        ("[[material]]\nname = \"a\"\nparams = { reflectance = [0.1, true, 0] }\n", "NaN"),
-        ("[[material]]\nname = \"a\"\nnormal = \"gone.png\"\n", "gone.png"),
+        (
+            "[[material]]\nname = \"a\"\nparams = { reflectance = 2 }\n",
+            "from 0 to 1",
+        ),
+        (
+            "[[material]]\nname = \"a\"\nparams = { reflectance = [0.1, true, 0] }\n",
+            "NaN",
+        ),
+        (
+            "[[material]]\nname = \"a\"\nnormal = \"gone.png\"\n",
+            "gone.png",
+        ),
         ("[[material]]\nname = \"a\"\nopacity = 1.5\n", "from 0 to 1"),
-        ("[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n", "a second material called `a`"),
-        ("[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\n", "has no `intensity`"),
-        ("[[light]]\nkind = \"directional\"\ndirection = [0, 0, 0]\nirradiance = 1\n", "no direction"),
-        ("[[light]]\nkind = \"spot\"\nposition = [0, 0, 0]\ntarget = [0, 1, 0]\nintensity = 1\ninner_deg = 40\n", "cone"),
+        (
+            "[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n",
+            "a second material called `a`",
+        ),
+        (
+            "[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\n",
+            "has no `intensity`",
+        ),
+        (
+            "[[light]]\nkind = \"directional\"\ndirection = [0, 0, 0]\nirradiance = 1\n",
+            "no direction",
+        ),
+        (
+            "[[light]]\nkind = \"spot\"\nposition = [0, 0, 0]\ntarget = [0, 1, 0]\nintensity = 1\ninner_deg = 40\n",
+            "cone",
+        ),
         ("a = = 3\n", "this is not TOML"),
         ("[camera]\neye = [0, 0, 1\n", "this is not TOML"),
     ] {
@@ -170,9 +281,17 @@ fn files_that_are_no_scene_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bad.toml");
     std::fs::write(&path, b"name = \"\xff\"").unwrap();
-    let error = Scene::load(&path, &LoadOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("byte 8") && error.contains("UTF-8"), "{error}");
-    let small = LoadOptions { max_bytes: 4, ..LoadOptions::default() };
+    let error = Scene::load(&path, &LoadOptions::default())
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("byte 8") && error.contains("UTF-8"),
+        "{error}"
+    );
+    let small = LoadOptions {
+        max_bytes: 4,
+        ..LoadOptions::default()
+    };
     let error = Scene::load(&path, &small).unwrap_err();
     assert!(matches!(error, SceneError::Limit { .. }), "{error}");
     let error = Scene::load(folder.path().join("gone.toml"), &small).unwrap_err();
@@ -207,6 +326,14 @@ fn a_gltf_object_is_included() {
     let scene = Scene::load(&path, &LoadOptions::default()).unwrap();
     assert_eq!((scene.name.as_str(), scene.cameras.len()), ("outer", 0));
     let placed = &scene.geometry.instances()[0];
-    assert_eq!((placed.material, placed.to_world.origin), (0, Vec3::new(0.0, 0.0, 4.0)));
-    assert_eq!(scene.materials[scene.geometry.instances()[1].material as usize].spec().name, "gltf");
+    assert_eq!(
+        (placed.material, placed.to_world.origin),
+        (0, Vec3::new(0.0, 0.0, 4.0))
+    );
+    assert_eq!(
+        scene.materials[scene.geometry.instances()[1].material as usize]
+            .spec()
+            .name,
+        "gltf"
+    );
 }
