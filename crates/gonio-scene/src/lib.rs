@@ -11,6 +11,7 @@ pub mod mesh;
 mod ray;
 mod reader;
 mod scene;
+mod scene_builder;
 pub mod texture;
 
 pub use camera::{Camera, Projection};
@@ -20,5 +21,6 @@ pub use light::{Light, LightRef, LightSample, LightTarget, Lights, SpotCone};
 pub use material::{Material, Shading};
 pub use mesh::TriangleMesh;
 pub use ray::{Hit, Ray};
-pub use scene::{LoadOptions, Scene, SceneBuilder};
+pub use scene::{LoadOptions, Scene};
+pub use scene_builder::SceneBuilder;
 pub use texture::Texture;

@@ -1,6 +1,10 @@
 use super::*;
+use crate::SceneBuilder;
+use crate::geometry::Shape;
+use crate::light::Light;
 use crate::material::{AlphaMode, Opacity};
 use crate::{Projection, Ray};
+use gonio_num::Affine3;
 
 const UP: Vec3<f32> = Vec3::new(0.0, 1.0, 0.0);
 

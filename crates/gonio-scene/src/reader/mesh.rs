@@ -1,8 +1,8 @@
 //! A bare mesh file as a scene: its parts, all grey, to be given materials by name.
 
 use super::extension;
+use crate::SceneBuilder;
 use crate::mesh::{obj, ply};
-use crate::scene::SceneBuilder;
 use crate::{Material, SceneError, Shape, TriangleMesh};
 use gonio_brdf::ModelSpec;
 use gonio_num::Affine3;

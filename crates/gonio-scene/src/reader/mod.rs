@@ -5,8 +5,8 @@ mod mesh;
 mod tangent;
 mod toml;
 
-use crate::scene::{LoadOptions, Scene, SceneBuilder};
 use crate::{Camera, SceneError};
+use crate::{LoadOptions, Scene, SceneBuilder};
 use gonio_brdf::registry;
 use std::path::Path;
 

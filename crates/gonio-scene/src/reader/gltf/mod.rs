@@ -11,7 +11,7 @@ mod material;
 mod node;
 mod primitive;
 
-use crate::scene::{LoadOptions, SceneBuilder};
+use crate::{LoadOptions, SceneBuilder};
 use crate::{Material, SceneError, Shape};
 use accessor::Arrays;
 use gltf::json::{self, mesh::Semantic, validation::Checked};

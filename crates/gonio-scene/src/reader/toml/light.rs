@@ -3,9 +3,9 @@
 use super::section::{Section, Value};
 use super::source::Source;
 use super::view::refuse;
+use crate::SceneBuilder;
 use crate::SceneError;
 use crate::light::{Light, SpotCone};
-use crate::scene::SceneBuilder;
 use gonio_env::{Environment, Layout};
 use gonio_num::Vec3;
 

@@ -47,7 +47,7 @@ mod source;
 mod view;
 
 use crate::SceneError;
-use crate::scene::{LoadOptions, SceneBuilder};
+use crate::{LoadOptions, SceneBuilder};
 use section::Section;
 use source::Source;
 use std::path::Path;

@@ -5,7 +5,7 @@ use super::source::{Source, did_you_mean};
 use super::view::refuse;
 use crate::camera::look_at;
 use crate::reader::{gltf, mesh};
-use crate::scene::{LoadOptions, SceneBuilder};
+use crate::{LoadOptions, SceneBuilder};
 use crate::{SceneError, Shape};
 use gonio_num::{Affine3, Vec3};
 use std::path::Path;

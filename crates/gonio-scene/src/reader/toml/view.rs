@@ -1,9 +1,9 @@
 //! `[camera]` and `[film]`.
 
 use super::section::Section;
+use crate::SceneBuilder;
 use crate::SceneError;
 use crate::camera::{Camera, Projection, look_at};
-use crate::scene::SceneBuilder;
 use gonio_num::Vec3;
 
 pub(super) const CAMERA_KEYS: [&str; 9] = [
