@@ -77,6 +77,18 @@ impl SceneBuilder {
         });
     }
 
+    /// Puts copies of the instances from index `first` on in their place: one of each for every placement, applied after the
+    /// instance's own transform.
+    pub(crate) fn replicate(&mut self, first: usize, placements: &[Affine3<f64>]) {
+        let originals = self.instances.split_off(first);
+        for placement in placements {
+            for instance in &originals {
+                let to_world = instance.to_world.to_f64().then(placement).to_f32();
+                self.instance(instance.shape, to_world, instance.material);
+            }
+        }
+    }
+
     /// Number of instances so far.
     pub fn instance_count(&self) -> usize {
         self.instances.len()

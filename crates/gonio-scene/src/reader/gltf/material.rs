@@ -24,7 +24,7 @@ struct Use {
 }
 
 impl Materials<'_> {
-    /// The material of a primitive without one: white, rough, dielectric... as glTF's default of every property has it.
+    /// The material of a primitive without one: every property has glTF's default, so it is a white rough metal.
     pub fn default_material(&mut self, vertex_colours: bool) -> Result<Material, SceneError> {
         self.read(None, &json::Material::default(), "default", vertex_colours)
     }

@@ -42,6 +42,7 @@ const TEXTURE_KEYS: [&str; 11] = [
 pub(super) struct Textures<'a> {
     source: &'a Source,
     limits: Limits,
+    max_bytes: u64,
     read: HashMap<PathBuf, Arc<Bitmap>>,
 }
 
@@ -54,6 +55,7 @@ impl<'a> Textures<'a> {
         Self {
             source,
             limits,
+            max_bytes: options.max_bytes,
             read: HashMap::new(),
         }
     }
@@ -63,10 +65,8 @@ impl<'a> Textures<'a> {
         if let Some(known) = self.read.get(&path) {
             return Ok(known.clone());
         }
-        let bytes = std::fs::read(&path).map_err(|e| {
-            self.source
-                .error(at.span(), format!("texture {}: {e}", path.display()), None)
-        })?;
+        let bytes = crate::reader::read_bytes(&path, self.max_bytes)
+            .map_err(|e| self.source.error(at.span(), format!("texture {e}"), None))?;
         let raw = RawImage::decode_within(&bytes, &self.limits).map_err(|e| {
             self.source
                 .error(at.span(), format!("texture {}: {e}", path.display()), None)

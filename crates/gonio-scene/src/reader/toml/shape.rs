@@ -10,8 +10,7 @@ use crate::{SceneError, Shape};
 use gonio_num::{Affine3, Vec3};
 use std::path::Path;
 
-const KEYS: [&str; 10] = [
-    "name",
+const KEYS: [&str; 9] = [
     "kind",
     "file",
     "material",
@@ -57,15 +56,20 @@ pub(super) fn read(
     let placements = placements(&section)?;
     if kind == Kind::Gltf {
         let path = file(&section)?;
-        for to_world in placements {
-            let placement = gltf::Placement {
-                to_world,
-                material,
-                object_only: true,
-            };
-            gltf::append(builder, &path, options, &placement)
-                .map_err(|e| unless_inside(&section, &path, e))?;
-        }
+        let placement = gltf::Placement {
+            to_world: Affine3::identity(),
+            material,
+            object_only: true,
+        };
+        // A choice of scene is meant for the file that was asked for, not for what it includes.
+        let inner = LoadOptions {
+            scene: None,
+            ..options.clone()
+        };
+        let first = builder.instance_count();
+        gltf::append(builder, &path, &inner, &placement)
+            .map_err(|e| unless_inside(&section, &path, e))?;
+        builder.replicate(first, &placements);
         return Ok(());
     }
     let shape = match kind {

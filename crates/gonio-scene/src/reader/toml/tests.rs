@@ -321,7 +321,7 @@ fn a_gltf_object_is_included() {
     std::fs::write(folder.path().join("t.gltf"), document).unwrap();
     let path = folder.path().join("outer.toml");
     let text = "[[material]]\nname = \"red\"\n[[shape]]\nkind = \"gltf\"\nfile = \"t.gltf\"\nmaterial = \"red\"\ntranslate = [0, 0, 4]\n\
-                [[shape]]\nkind = \"gltf\"\nfile = \"t.gltf\"\n";
+                [[shape]]\nkind = \"gltf\"\nfile = \"t.gltf\"\ninstances = [{ scale = 2 }, { translate = [5, 0, 0] }]\n";
     std::fs::write(&path, text).unwrap();
     let scene = Scene::load(&path, &LoadOptions::default()).unwrap();
     assert_eq!((scene.name.as_str(), scene.cameras.len()), ("outer", 0));
@@ -330,10 +330,13 @@ fn a_gltf_object_is_included() {
         (placed.material, placed.to_world.origin),
         (0, Vec3::new(0.0, 0.0, 4.0))
     );
-    assert_eq!(
-        scene.materials[scene.geometry.instances()[1].material as usize]
-            .spec()
-            .name,
-        "gltf"
+    let copies = &scene.geometry.instances()[1..];
+    assert_eq!(copies.len(), 2);
+    assert!(
+        copies
+            .iter()
+            .all(|i| i.shape == 1 && scene.materials[i.material as usize].spec().name == "gltf")
     );
+    assert_eq!(copies[0].to_world.x, Vec3::new(2.0, 0.0, 0.0));
+    assert_eq!(copies[1].to_world.origin, Vec3::new(5.0, 0.0, 0.0));
 }
