@@ -40,9 +40,8 @@ impl Matrix3 {
     #[inline(always)]
     pub fn apply<R: Real>(&self, v: [R; 3]) -> [R; 3] {
         let mut out = [R::zero(); 3];
-        for i in 0..3 {
-            let m = &self.0[i];
-            out[i] = R::lit(m[0]) * v[0] + R::lit(m[1]) * v[1] + R::lit(m[2]) * v[2];
+        for (x, m) in out.iter_mut().zip(&self.0) {
+            *x = R::lit(m[0]) * v[0] + R::lit(m[1]) * v[1] + R::lit(m[2]) * v[2];
         }
         out
     }

