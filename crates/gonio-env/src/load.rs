@@ -50,7 +50,18 @@ impl Environment {
                 suggestion: None,
             });
         }
-        let image = Image::read_within(path, &options.limits)?;
+        Self::of_image(Image::read_within(path, &options.limits)?, path, options)
+    }
+
+    /// As [`Environment::load_with`], from the bytes of a picture; `file` names it in errors.
+    ///
+    /// # Errors
+    /// As [`Environment::load_with`], without [`EnvError::NotFound`].
+    pub fn decode(bytes: &[u8], file: &Path, options: &LoadOptions) -> Result<Self, EnvError> {
+        Self::of_image(Image::decode(bytes, &options.limits)?, file, options)
+    }
+
+    fn of_image(image: Image, path: &Path, options: &LoadOptions) -> Result<Self, EnvError> {
         let layout = match options.layout {
             Some(layout) => layout,
             None => detect(&image, path)?,

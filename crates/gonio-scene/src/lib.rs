@@ -4,6 +4,7 @@
 
 pub mod camera;
 mod error;
+mod files;
 pub mod geometry;
 pub mod light;
 pub mod material;
@@ -16,6 +17,7 @@ pub mod texture;
 
 pub use camera::{Camera, Projection};
 pub use error::SceneError;
+pub use files::Files;
 pub use geometry::{Aabb, AreaSample, Geometry, Instance, Shape, SurfacePoint};
 pub use light::{Light, LightRef, LightSample, LightTarget, Lights, SpotCone};
 pub use material::{Material, Shading};

@@ -3,7 +3,7 @@
 use crate::geometry::{Aabb, Geometry, SurfacePoint};
 use crate::light::Lights;
 use crate::material::{Material, Shading};
-use crate::{Camera, Ray, SceneError};
+use crate::{Camera, Files, Ray, SceneError};
 use gonio_brdf::{ModelSpec, registry};
 use gonio_env::Environment;
 use gonio_num::Vec3;
@@ -37,6 +37,8 @@ pub struct LoadOptions {
     pub scene: Option<usize>,
     /// The name or the index of the camera that becomes the first one.
     pub camera: Option<String>,
+    /// Where files are read from.
+    pub files: Files,
     /// Bytes that a file, and all buffers of a file together, may have.
     pub max_bytes: u64,
     /// Pixels that one texture may have.
@@ -50,6 +52,7 @@ impl Default for LoadOptions {
         Self {
             scene: None,
             camera: None,
+            files: Files::Disk,
             max_bytes: 4 << 30,
             max_texture_pixels: 1 << 28,
             max_instances: 10_000_000,

@@ -137,6 +137,30 @@ impl Lights {
         self.probability(index) * emitter.pdf(&self.geometry, from, hit)
     }
 
+    /// The radiant flux \[W] that a light emits, in each channel: 4π I of a point light, ∫ I dω of a spot light's cone, π A L of
+    /// each side of an area light. Nothing for a light that is infinitely far away, or that does not exist.
+    pub fn power(&self, light: u32) -> Option<[f64; 3]> {
+        let times = |rgb: &[f32; 3], factor: f64| Some(rgb.map(|c| factor * f64::from(c)));
+        match self.lights.get(light as usize)? {
+            Light::Point { intensity, .. } => times(intensity, 4.0 * PI),
+            Light::Spot {
+                intensity, cone, ..
+            } => times(intensity, cone.solid_angle()),
+            Light::Area {
+                instance,
+                radiance,
+                two_sided,
+            } => {
+                let sides = if *two_sided { 2.0 } else { 1.0 };
+                times(
+                    radiance,
+                    sides * PI * f64::from(self.geometry.area(*instance)),
+                )
+            }
+            Light::Directional { .. } | Light::Environment(_) => None,
+        }
+    }
+
     /// The density \[sr⁻¹] with which [`Lights::sample`] chooses the direction `wi` by way of the environment.
     pub fn pdf_environment(&self, wi: Vec3<f32>) -> f32 {
         match (self.environment, self.environment()) {

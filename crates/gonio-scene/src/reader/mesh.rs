@@ -3,16 +3,21 @@
 use super::extension;
 use crate::SceneBuilder;
 use crate::mesh::{obj, ply};
-use crate::{Material, SceneError, Shape, TriangleMesh};
+use crate::{LoadOptions, Material, SceneError, Shape, TriangleMesh};
 use gonio_brdf::ModelSpec;
 use gonio_num::Affine3;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Adds an OBJ or PLY file, made of grey diffuse materials: one for each name after `usemtl`, or `default`.
-pub(super) fn read(builder: &mut SceneBuilder, path: &Path) -> Result<(), SceneError> {
+pub(super) fn read(
+    builder: &mut SceneBuilder,
+    path: &Path,
+    options: &LoadOptions,
+) -> Result<(), SceneError> {
+    let bytes = options.files.read(path, options.max_bytes)?;
     if extension(path) == "obj" {
-        let file = obj::read(path)?;
+        let file = obj::parse(&bytes, path)?;
         if !file.libraries.is_empty() {
             let named = file.libraries.join(", ");
             builder.warn(format!(
@@ -25,7 +30,7 @@ pub(super) fn read(builder: &mut SceneBuilder, path: &Path) -> Result<(), SceneE
         }
         return Ok(());
     }
-    add(builder, ply::read(path)?, "default")
+    add(builder, ply::parse(&bytes, path)?, "default")
 }
 
 /// Adds a mesh of the grey material `name`, which is made if there is none yet.
@@ -41,10 +46,15 @@ fn add(builder: &mut SceneBuilder, mesh: TriangleMesh, name: &str) -> Result<(),
 }
 
 /// Adds the whole of an OBJ or PLY file as one shape.
-pub(super) fn shape(builder: &mut SceneBuilder, path: &Path) -> Result<u32, SceneError> {
+pub(super) fn shape(
+    builder: &mut SceneBuilder,
+    path: &Path,
+    options: &LoadOptions,
+) -> Result<u32, SceneError> {
+    let bytes = options.files.read(path, options.max_bytes)?;
     let mesh = match extension(path).as_str() {
-        "obj" => obj::read(path)?.merged(),
-        "ply" => ply::read(path)?,
+        "obj" => obj::parse(&bytes, path)?.merged(),
+        "ply" => ply::parse(&bytes, path)?,
         other => {
             return Err(SceneError::Unsupported {
                 path: path.to_owned(),

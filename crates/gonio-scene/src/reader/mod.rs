@@ -20,7 +20,7 @@ pub(crate) fn load(path: &Path, options: &LoadOptions) -> Result<Scene, SceneErr
     match extension(path).as_str() {
         "toml" => toml::read(&mut builder, path, options)?,
         "gltf" | "glb" => gltf::read(&mut builder, path, options)?,
-        "obj" | "ply" => mesh::read(&mut builder, path)?,
+        "obj" | "ply" => mesh::read(&mut builder, path, options)?,
         other => return Err(unknown_format(path, other)),
     }
     let mut scene = builder.build()?;
@@ -44,21 +44,6 @@ fn unknown_format(path: &Path, extension: &str) -> SceneError {
         what: format!("a scene file with the extension `{extension}`"),
         help: format!("Gonio reads .{}", EXTENSIONS.join(", .")),
     }
-}
-
-/// The bytes of a file, if there are at most `max_bytes`.
-fn read_bytes(path: &Path, max_bytes: u64) -> Result<Vec<u8>, SceneError> {
-    let io = |e| SceneError::io(path, e);
-    let size = std::fs::metadata(path).map_err(io)?.len();
-    if size > max_bytes {
-        return Err(SceneError::Limit {
-            path: path.to_owned(),
-            place: "file".into(),
-            found: format!("{size} bytes"),
-            limit: format!("{max_bytes} bytes"),
-        });
-    }
-    std::fs::read(path).map_err(io)
 }
 
 /// Moves the camera of this name, or else of this index, to the front.

@@ -2,7 +2,7 @@
 //!
 //! Only files beside the document are read, never the network: a URI is a `data:` URI or a relative path.
 
-use crate::SceneError;
+use crate::{LoadOptions, SceneError};
 use gltf::json;
 use std::path::{Path, PathBuf};
 
@@ -85,8 +85,9 @@ pub(super) fn buffers(
     path: &Path,
     root: &json::Root,
     bin: Option<&[u8]>,
-    max_bytes: u64,
+    options: &LoadOptions,
 ) -> Result<Vec<Vec<u8>>, SceneError> {
+    let max_bytes = options.max_bytes;
     let mut total = 0_u64;
     let mut all = Vec::with_capacity(root.buffers.len());
     for (index, buffer) in root.buffers.iter().enumerate() {
@@ -102,7 +103,7 @@ pub(super) fn buffers(
             });
         }
         let bytes = match (&buffer.uri, bin) {
-            (Some(uri), _) => resolve(path, &place, uri, max_bytes)?,
+            (Some(uri), _) => resolve(path, &place, uri, options)?,
             (None, Some(bin)) if index == 0 => bin.to_vec(),
             (None, _) => {
                 let found = "neither a URI nor a binary chunk";
@@ -128,7 +129,7 @@ pub(super) fn resolve(
     path: &Path,
     place: &str,
     uri: &str,
-    max_bytes: u64,
+    options: &LoadOptions,
 ) -> Result<Vec<u8>, SceneError> {
     if let Some(data) = uri.strip_prefix("data:") {
         let bad = |found: &str| SceneError::format(path, place, found, "a base64 data URI");
@@ -141,18 +142,7 @@ pub(super) fn resolve(
         return base64(body.as_bytes()).ok_or_else(|| bad("a broken base64 data URI"));
     }
     let file = local_path(path, place, uri)?;
-    let size = std::fs::metadata(&file)
-        .map_err(|e| SceneError::io(&file, e))?
-        .len();
-    if size > max_bytes {
-        return Err(SceneError::Limit {
-            path: file,
-            place: place.into(),
-            found: format!("{size} bytes"),
-            limit: format!("{max_bytes} bytes"),
-        });
-    }
-    std::fs::read(&file).map_err(|e| SceneError::io(&file, e))
+    options.files.read(&file, options.max_bytes)
 }
 
 /// The file that a relative URI names.

@@ -2,8 +2,8 @@
 
 use super::accessor::Arrays;
 use super::container::resolve;
-use crate::SceneError;
 use crate::texture::Bitmap;
+use crate::{LoadOptions, SceneError};
 use gonio_image::{Limits, RawImage};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -12,20 +12,20 @@ use std::sync::Arc;
 pub(super) struct Images<'a> {
     arrays: &'a Arrays<'a>,
     limits: Limits,
-    max_bytes: u64,
+    options: &'a LoadOptions,
     decoded: HashMap<usize, Arc<Bitmap>>,
 }
 
 impl<'a> Images<'a> {
-    pub fn new(arrays: &'a Arrays<'a>, max_pixels: u64, max_bytes: u64) -> Self {
+    pub fn new(arrays: &'a Arrays<'a>, options: &'a LoadOptions) -> Self {
         let limits = Limits {
-            max_pixels,
+            max_pixels: options.max_texture_pixels,
             ..Limits::default()
         };
         Self {
             arrays,
             limits,
-            max_bytes,
+            options,
             decoded: HashMap::new(),
         }
     }
@@ -51,7 +51,7 @@ impl<'a> Images<'a> {
         let owned;
         let bytes: &[u8] = match (&image.uri, image.buffer_view) {
             (Some(uri), _) => {
-                owned = resolve(arrays.path, &label, uri, self.max_bytes)?;
+                owned = resolve(arrays.path, &label, uri, self.options)?;
                 &owned
             }
             (None, Some(view)) => arrays.view(view.value())?,

@@ -52,7 +52,7 @@ pub(super) fn append(
     options: &LoadOptions,
     placement: &Placement,
 ) -> Result<(), SceneError> {
-    let bytes = super::read_bytes(path, options.max_bytes)?;
+    let bytes = options.files.read(path, options.max_bytes)?;
     let (text, bin) = container::split(path, &bytes)?;
     // First as plain JSON: extensions that change the document's form are named before they break the parsing.
     let plain: serde_json::Value =
@@ -61,7 +61,7 @@ pub(super) fn append(
     check_version(path, &plain)?;
     drop(plain);
     let root: json::Root = serde_json::from_slice(text).map_err(|e| json_error(path, &e))?;
-    let buffers = container::buffers(path, &root, bin, options.max_bytes)?;
+    let buffers = container::buffers(path, &root, bin, options)?;
     let arrays = Arrays {
         path,
         root: &root,
@@ -70,7 +70,7 @@ pub(super) fn append(
     for warning in extension::warnings(&root) {
         builder.warn(warning);
     }
-    let images = image::Images::new(&arrays, options.max_texture_pixels, options.max_bytes);
+    let images = image::Images::new(&arrays, options);
     let mut reader = Reader {
         arrays: &arrays,
         builder,

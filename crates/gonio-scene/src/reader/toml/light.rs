@@ -3,11 +3,12 @@
 use super::section::{Section, Value};
 use super::source::Source;
 use super::view::refuse;
-use crate::SceneBuilder;
 use crate::SceneError;
 use crate::light::{Light, SpotCone};
+use crate::{LoadOptions, SceneBuilder};
 use gonio_env::{Environment, Layout};
 use gonio_num::Vec3;
+use std::path::Path;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
@@ -101,11 +102,29 @@ pub(super) fn read(
     Ok(())
 }
 
+/// The panorama in a file, or what is wrong with it and how to go on.
+fn panorama(
+    path: &Path,
+    layout: Option<Layout>,
+    options: &LoadOptions,
+) -> Result<Environment, (String, Option<String>)> {
+    let bytes = options
+        .files
+        .read(path, options.max_bytes)
+        .map_err(|e| (e.to_string(), None))?;
+    let reading = gonio_env::LoadOptions {
+        layout,
+        ..Default::default()
+    };
+    Environment::decode(&bytes, path, &reading).map_err(|e| (e.to_string(), e.help()))
+}
+
 /// `[environment]`.
 pub(super) fn environment(
     builder: &mut SceneBuilder,
     source: &Source,
     value: &Value,
+    options: &LoadOptions,
 ) -> Result<(), SceneError> {
     let keys = ["file", "uniform", "layout", "rotate_deg", "scale"];
     let section = Section::new(source, "[environment]", value, &keys)?;
@@ -116,8 +135,8 @@ pub(super) fn environment(
     ];
     let layout = section.choice("layout", &layouts)?;
     let mut made = match (section.path("file")?, section.colour("uniform")?) {
-        (Some(path), None) => Environment::load(&path, layout)
-            .map_err(|e| section.error_at("file", e.to_string(), e.help()))?,
+        (Some(path), None) => panorama(&path, layout, options)
+            .map_err(|(message, help)| section.error_at("file", message, help))?,
         (None, Some(radiance)) => {
             refuse(&section, "layout", "a uniform environment has none")?;
             Environment::uniform(radiance)

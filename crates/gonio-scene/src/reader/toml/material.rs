@@ -41,21 +41,21 @@ const TEXTURE_KEYS: [&str; 11] = [
 /// The pictures of a scene file, each read once.
 pub(super) struct Textures<'a> {
     source: &'a Source,
+    options: &'a LoadOptions,
     limits: Limits,
-    max_bytes: u64,
     read: HashMap<PathBuf, Arc<Bitmap>>,
 }
 
 impl<'a> Textures<'a> {
-    pub fn new(source: &'a Source, options: &LoadOptions) -> Self {
+    pub fn new(source: &'a Source, options: &'a LoadOptions) -> Self {
         let limits = Limits {
             max_pixels: options.max_texture_pixels,
             ..Limits::default()
         };
         Self {
             source,
+            options,
             limits,
-            max_bytes: options.max_bytes,
             read: HashMap::new(),
         }
     }
@@ -65,7 +65,10 @@ impl<'a> Textures<'a> {
         if let Some(known) = self.read.get(&path) {
             return Ok(known.clone());
         }
-        let bytes = crate::reader::read_bytes(&path, self.max_bytes)
+        let bytes = self
+            .options
+            .files
+            .read(&path, self.options.max_bytes)
             .map_err(|e| self.source.error(at.span(), format!("texture {e}"), None))?;
         let raw = RawImage::decode_within(&bytes, &self.limits).map_err(|e| {
             self.source

@@ -70,7 +70,7 @@ pub(super) fn read(
     path: &Path,
     options: &LoadOptions,
 ) -> Result<(), SceneError> {
-    let bytes = super::read_bytes(path, options.max_bytes)?;
+    let bytes = options.files.read(path, options.max_bytes)?;
     let text = String::from_utf8(bytes).map_err(|e| {
         let place = format!("byte {}", e.utf8_error().valid_up_to());
         SceneError::format(path, place, "a byte that isn't UTF-8", "TOML text")
@@ -109,7 +109,7 @@ fn read_text(
         )?;
     }
     if let Some(environment) = top.get("environment") {
-        light::environment(builder, source, environment)?;
+        light::environment(builder, source, environment, options)?;
     }
     let mut textures = material::Textures::new(source, options);
     for material in top.tables("material")? {

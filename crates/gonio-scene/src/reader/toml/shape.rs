@@ -75,7 +75,7 @@ pub(super) fn read(
     let shape = match kind {
         Kind::Mesh => {
             let path = file(&section)?;
-            mesh::shape(builder, &path).map_err(|e| unless_inside(&section, &path, e))?
+            mesh::shape(builder, &path, options).map_err(|e| unless_inside(&section, &path, e))?
         }
         Kind::Sphere => builder.shape(Shape::Sphere),
         Kind::Rectangle => builder.shape(Shape::Rectangle),
