@@ -29,6 +29,7 @@ mod check;
 mod error;
 mod number;
 mod parameter;
+mod showcase;
 mod spec;
 
 pub mod batch;
@@ -44,4 +45,5 @@ pub use model::{Model, ParameterSlot};
 pub use number::Number;
 pub use parameter::{Kind, ParameterInfo, Value};
 pub use registry::{Alias, Declares, ModelInfo};
+pub use showcase::showcase;
 pub use spec::ModelSpec;
