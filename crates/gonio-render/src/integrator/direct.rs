@@ -1,0 +1,83 @@
+//! The reflection equation alone (T13): one reflection of the light that comes straight from the lights.
+//!
+//! Lr(ωr) = Σᵢ Lᵢ f cosθᵢ over point, spot and directional lights (12), plus ∫ Li f cosθi dωi over area lights and the
+//! environment (13).
+
+use super::vertex::{Arrival, Vertex, arrive, environment_radiance};
+use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
+use gonio_num::Vec3;
+use gonio_radiometry::sequence::SampleStream;
+use gonio_scene::Scene;
+
+/// Options of the direct integrator: none so far.
+///
+/// The sum over point lights is exact. Each area light and the environment is one integral, estimated from one sample of
+/// that light and one direction drawn by the reflection function, joined by multiple importance sampling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Direct;
+
+impl Direct {
+    /// Radiance that `vertex` reflects toward its viewer.
+    pub(super) fn reflected(
+        &self,
+        scene: &Scene,
+        vertex: &Vertex<'_>,
+        stream: &mut SampleStream,
+        counts: &mut RayCounts,
+    ) -> [f32; 3] {
+        let mut total = [0.0; 3];
+        if !vertex.model.is_delta() {
+            for light in scene.lights.each() {
+                stream.seek(dimension::LIGHTS + 3 * light.index());
+                let [part, position @ ..] = stream.next_3d();
+                let Some(sample) = light.sample(&vertex.point, part, position) else {
+                    continue;
+                };
+                let direct = vertex.reflect_light(scene, &sample, counts, |density| {
+                    if sample.delta {
+                        1.0
+                    } else {
+                        power_heuristic(sample.pdf, density)
+                    }
+                });
+                total = sum(total, direct);
+            }
+        }
+
+        stream.seek(dimension::of_bounce(0) + dimension::DIRECTION);
+        let Some(drawn) = vertex.sample(stream.next_3d()) else {
+            return total;
+        };
+        let weight = |light_density: f32| {
+            if drawn.delta {
+                1.0
+            } else {
+                power_heuristic(drawn.pdf, light_density)
+            }
+        };
+        let ray = vertex.point.spawn_ray(drawn.wi);
+        let (radiance, density) = match arrive(scene, &ray, stream, counts) {
+            Arrival::Infinity => (
+                environment_radiance(scene, drawn.wi),
+                scene.lights.environment().map_or(0.0, |e| e.pdf(drawn.wi)),
+            ),
+            Arrival::Surface(next) => (
+                scene.emitted(&next.point, next.wo_world),
+                density_of_light(scene, vertex, &next, drawn.wi),
+            ),
+        };
+        sum(
+            total,
+            scaled(product(drawn.weight, radiance), weight(density)),
+        )
+    }
+}
+
+/// The density with which the light that `next` lies on, if it is one, is sampled in direction `wi` from `vertex`.
+fn density_of_light(scene: &Scene, vertex: &Vertex<'_>, next: &Vertex<'_>, wi: Vec3<f32>) -> f32 {
+    let instance = &scene.geometry.instances()[next.point.instance as usize];
+    let light = instance
+        .area_light
+        .and_then(|i| scene.lights.each().nth(i as usize));
+    light.map_or(0.0, |light| light.pdf_area(vertex.point.p, &next.point, wi))
+}

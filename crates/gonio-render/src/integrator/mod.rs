@@ -1,0 +1,167 @@
+//! Integrators: estimates of the radiance that arrives along a ray.
+
+pub mod direct;
+pub mod path;
+mod vertex;
+
+pub use direct::Direct;
+pub use path::Path;
+pub use vertex::Vertex;
+
+use crate::film::{FilmSample, FirstSurface};
+use gonio_radiometry::sequence::SampleStream;
+use gonio_scene::{Ray, Scene};
+use std::ops::AddAssign;
+use vertex::Arrival;
+
+/// How the reflection equation is solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Integrator {
+    /// The reflection equation alone: one reflection, light after light.
+    Direct(Direct),
+    /// Path tracing over many reflections.
+    Path(Path),
+}
+
+impl Default for Integrator {
+    fn default() -> Self {
+        Self::Path(Path::default())
+    }
+}
+
+impl Integrator {
+    /// The name: `direct` or `path`.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Direct(_) => "direct",
+            Self::Path(_) => "path",
+        }
+    }
+
+    /// Estimates the radiance that arrives along `ray` at its origin [W m⁻² sr⁻¹], with what the ray met first.
+    pub fn radiance(
+        &self,
+        scene: &Scene,
+        ray: &Ray,
+        stream: &mut SampleStream,
+        counts: &mut RayCounts,
+    ) -> FilmSample {
+        match vertex::arrive(scene, ray, stream, counts) {
+            Arrival::Infinity => FilmSample {
+                radiance: vertex::environment_radiance(scene, ray.direction),
+                first: None,
+            },
+            Arrival::Surface(vertex) => {
+                let first = Some(FirstSurface {
+                    albedo: vertex.albedo,
+                    normal: vertex.frame.n.to_array(),
+                    depth: vertex.distance,
+                    material: vertex.material,
+                });
+                let emitted = scene.emitted(&vertex.point, -ray.direction);
+                let reflected = self.reflected(scene, vertex, stream, counts);
+                FilmSample {
+                    radiance: sum(emitted, reflected),
+                    first,
+                }
+            }
+        }
+    }
+
+    /// Estimates the radiance that `vertex` reflects toward its viewer, Lr(ωr) of the reflection equation (12, 13)
+    /// [W m⁻² sr⁻¹].
+    pub fn reflected(
+        &self,
+        scene: &Scene,
+        vertex: Vertex<'_>,
+        stream: &mut SampleStream,
+        counts: &mut RayCounts,
+    ) -> [f32; 3] {
+        match self {
+            Self::Direct(direct) => direct.reflected(scene, &vertex, stream, counts),
+            Self::Path(path) => path.reflected(scene, vertex, stream, counts),
+        }
+    }
+}
+
+/// How many rays were followed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// Rays to the nearest surface.
+    pub nearest: u64,
+    /// Shadow rays.
+    pub shadow: u64,
+}
+
+impl RayCounts {
+    /// All rays.
+    pub fn total(&self) -> u64 {
+        self.nearest + self.shadow
+    }
+}
+
+impl AddAssign for RayCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.nearest += other.nearest;
+        self.shadow += other.shadow;
+    }
+}
+
+/// Dimensions of the sample sequence: the film takes 0 and 1, the lens 2 and 3, then each reflection eight.
+pub(crate) mod dimension {
+    /// Where reflection `bounce` begins to draw: light choice, light position (2), direction (3), roulette.
+    pub const fn of_bounce(bounce: u32) -> u32 {
+        4 + 8 * bounce
+    }
+    /// Offset of the direction's three numbers.
+    pub const DIRECTION: u32 = 3;
+    /// Offset of Russian roulette's number.
+    pub const ROULETTE: u32 = 6;
+    /// Where the numbers begin that decide whether a ray passes a partly transparent surface: far above any bounce.
+    pub const OPACITY: u32 = 1 << 24;
+    /// Where `direct` begins to draw for its lights, three numbers each.
+    pub const LIGHTS: u32 = 1 << 20;
+}
+
+pub(crate) fn sum(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+pub(crate) fn product(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
+}
+
+pub(crate) fn scaled(a: [f32; 3], s: f32) -> [f32; 3] {
+    [a[0] * s, a[1] * s, a[2] * s]
+}
+
+/// Weight of a strategy with density `own` against one with density `other`, one sample each: the power heuristic with
+/// exponent 2 (Veach 1997, eq. 9.15). 0 where `own` is 0; finite densities never overflow.
+pub(crate) fn power_heuristic(own: f32, other: f32) -> f32 {
+    if own <= 0.0 {
+        return 0.0;
+    }
+    let ratio = other / own;
+    1.0 / (1.0 + ratio * ratio)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_weights_of_two_strategies_sum_to_one() {
+        for (a, b) in [
+            (1.0, 1.0),
+            (0.3, 7.0),
+            (1e30, 1e-30),
+            (1e-30, 1e30),
+            (5.0, 0.0),
+        ] {
+            let total = power_heuristic(a, b) + power_heuristic(b, a);
+            assert!((total - 1.0).abs() < 1e-6, "{a} {b}: {total}");
+        }
+        assert_eq!(power_heuristic(0.0, 0.0), 0.0);
+        assert!((power_heuristic(2.0, 1.0) - 0.8).abs() < 1e-6);
+    }
+}

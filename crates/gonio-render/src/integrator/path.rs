@@ -1,0 +1,111 @@
+//! Path tracing: the reflection equation, applied again to the light that other surfaces reflect (Kajiya 1986).
+
+use super::vertex::{Arrival, Vertex, arrive, environment_radiance};
+use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
+use gonio_radiometry::sequence::SampleStream;
+use gonio_scene::Scene;
+
+/// Options of the path tracer.
+///
+/// At each reflection one light is sampled and one direction is drawn by the reflection function; multiple importance
+/// sampling (Veach 1997, power heuristic) joins the two estimates of direct light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Path {
+    /// Reflections that light may make on its way from a light to the camera; 0 shows lights alone.
+    pub max_bounces: u32,
+    /// Reflections before Russian roulette may end a path. Roulette leaves the expected image as it is.
+    pub roulette_after: u32,
+}
+
+impl Default for Path {
+    /// 64 reflections at most, roulette after 4.
+    fn default() -> Self {
+        Self {
+            max_bounces: 64,
+            roulette_after: 4,
+        }
+    }
+}
+
+impl Path {
+    /// Radiance that `vertex` reflects toward its viewer.
+    pub(super) fn reflected<'a>(
+        &self,
+        scene: &'a Scene,
+        mut vertex: Vertex<'a>,
+        stream: &mut SampleStream,
+        counts: &mut RayCounts,
+    ) -> [f32; 3] {
+        let mut total = [0.0; 3];
+        let mut throughput = [1.0; 3];
+        for bounce in 0..self.max_bounces {
+            let base = dimension::of_bounce(bounce);
+            stream.seek(base);
+            let choice = stream.next_1d();
+            let position = stream.next_2d();
+            if !vertex.model.is_delta()
+                && let Some(light) = scene.lights.sample(&vertex.point, choice, position)
+            {
+                let direct = vertex.reflect_light(scene, &light, counts, |density| {
+                    if light.delta {
+                        1.0
+                    } else {
+                        power_heuristic(light.pdf, density)
+                    }
+                });
+                total = sum(total, product(throughput, direct));
+            }
+
+            stream.seek(base + dimension::DIRECTION);
+            let Some(drawn) = vertex.sample(stream.next_3d()) else {
+                break;
+            };
+            throughput = product(throughput, drawn.weight);
+            if throughput == [0.0; 3] {
+                break;
+            }
+            let ray = vertex.point.spawn_ray(drawn.wi);
+            let weight = |light_density: f32| {
+                if drawn.delta {
+                    1.0
+                } else {
+                    power_heuristic(drawn.pdf, light_density)
+                }
+            };
+            match arrive(scene, &ray, stream, counts) {
+                Arrival::Infinity => {
+                    let radiance = environment_radiance(scene, drawn.wi);
+                    if radiance != [0.0; 3] {
+                        let w = weight(scene.lights.pdf_environment(drawn.wi));
+                        total = sum(total, scaled(product(throughput, radiance), w));
+                    }
+                    break;
+                }
+                Arrival::Surface(next) => {
+                    let radiance = scene.emitted(&next.point, next.wo_world);
+                    if radiance != [0.0; 3] {
+                        let density = scene.lights.pdf_area(vertex.point.p, &next.point, drawn.wi);
+                        total = sum(
+                            total,
+                            scaled(product(throughput, radiance), weight(density)),
+                        );
+                    }
+                    vertex = next;
+                }
+            }
+
+            if bounce >= self.roulette_after {
+                let survival = throughput[0]
+                    .max(throughput[1])
+                    .max(throughput[2])
+                    .min(0.95);
+                stream.seek(base + dimension::ROULETTE);
+                if stream.next_1d() >= survival {
+                    break;
+                }
+                throughput = scaled(throughput, 1.0 / survival);
+            }
+        }
+        total
+    }
+}

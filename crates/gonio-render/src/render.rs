@@ -1,0 +1,217 @@
+//! [`render`]: a picture, pass by pass.
+
+use crate::film::{self, Film, PixelSums, Rejected};
+use crate::{Integrator, PixelFilter, RayCounts, RenderError};
+use gonio_radiometry::sequence::{SampleStream, SamplerKind};
+use gonio_scene::{Camera, Scene};
+use rayon::prelude::*;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+/// When a rendering is finished: at the first target that is reached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// Samples per pixel.
+    pub samples: u32,
+    /// Wall-clock time.
+    pub time: Option<Duration>,
+    /// Noise, [`Film::noise`]: 0.02 is 2 %.
+    pub noise: Option<f64>,
+}
+
+/// How a picture is taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RenderOptions {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// When to stop.
+    pub target: Target,
+    /// How the reflection equation is solved.
+    pub integrator: Integrator,
+    /// Which sequence the samples come from.
+    pub sampler: SamplerKind,
+    /// The pixel filter.
+    pub filter: PixelFilter,
+    /// Seed of the sequence.
+    pub seed: u64,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            width: 512,
+            height: 512,
+            target: Target {
+                samples: 64,
+                time: None,
+                noise: None,
+            },
+            integrator: Integrator::default(),
+            sampler: SamplerKind::Sobol,
+            filter: PixelFilter::default(),
+            seed: 0,
+        }
+    }
+}
+
+/// How far a rendering has come, told after each pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Samples per pixel so far.
+    pub samples: u32,
+    /// Samples per pixel at which it ends at the latest.
+    pub of: u32,
+    /// Rays followed so far.
+    pub rays: RayCounts,
+    /// Time spent so far.
+    pub elapsed: Duration,
+    /// [`Film::noise`] so far.
+    pub noise: f64,
+}
+
+/// Why a rendering ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stop {
+    /// All samples were taken.
+    Samples,
+    /// The time was spent.
+    Time,
+    /// The noise was low enough.
+    Noise,
+    /// The progress callback asked to stop.
+    Interrupted,
+}
+
+/// Samples of every pixel in one pass, the unit between two looks at the targets. Passes double from 1, so that a first
+/// picture is there at once, up to this many.
+const LARGEST_PASS: u32 = 16;
+/// Stopping by noise needs this many samples before it trusts its own estimate.
+const LEAST_SAMPLES_FOR_NOISE: u32 = 16;
+
+/// Takes a picture of `scene` through `camera`, on the threads of the current rayon pool.
+///
+/// `progress` is called after each pass with what was done and the film so far; `ControlFlow::Break` ends the rendering
+/// early. The film it leaves is whole: every pixel has the same number of samples.
+///
+/// The same options give the same bits on any number of threads. A target of time or noise only decides *how many* samples
+/// are taken.
+///
+/// # Errors
+/// A film of no pixels or too many, no samples, or a noise target that is not positive.
+pub fn render(
+    scene: &Scene,
+    camera: &Camera,
+    options: &RenderOptions,
+    mut progress: impl FnMut(&Progress, &Film) -> ControlFlow<()>,
+) -> Result<(Film, Stop), RenderError> {
+    let target = options.target;
+    if target.samples == 0 {
+        return Err(RenderError::Parameter {
+            option: "samples",
+            found: "0".into(),
+            expected: "at least 1 sample per pixel",
+        });
+    }
+    if let Some(noise) = target.noise
+        && !(noise > 0.0 && noise.is_finite())
+    {
+        return Err(RenderError::Parameter {
+            option: "noise",
+            found: noise.to_string(),
+            expected: "a positive relative error such as 0.02",
+        });
+    }
+    let mut film = Film::new(options.width, options.height)?;
+    let start = Instant::now();
+    let mut rays = RayCounts::default();
+    let mut done = 0;
+    let mut pass = 1;
+    loop {
+        let until = (done + pass).min(target.samples);
+        rays += take_pass(scene, camera, options, &mut film, done..until);
+        done = until;
+        pass = (pass * 2).min(LARGEST_PASS);
+
+        let report = Progress {
+            samples: done,
+            of: target.samples,
+            rays,
+            elapsed: start.elapsed(),
+            noise: film.noise(),
+        };
+        let asked = progress(&report, &film);
+        let quiet = target.noise.is_some_and(|n| report.noise <= n);
+        let stop = if done == target.samples {
+            Stop::Samples
+        } else if asked.is_break() {
+            Stop::Interrupted
+        } else if quiet && done >= LEAST_SAMPLES_FOR_NOISE {
+            Stop::Noise
+        } else if target.time.is_some_and(|t| report.elapsed >= t) {
+            Stop::Time
+        } else {
+            continue;
+        };
+        return Ok((film, stop));
+    }
+}
+
+/// Adds the samples `range` to every pixel.
+fn take_pass(
+    scene: &Scene,
+    camera: &Camera,
+    options: &RenderOptions,
+    film: &mut Film,
+    range: std::ops::Range<u32>,
+) -> RayCounts {
+    let rows: Vec<&mut [PixelSums]> = film.rows_mut().collect();
+    let parts: Vec<(RayCounts, Rejected)> = rows
+        .into_par_iter()
+        .enumerate()
+        .map(|(y, row)| {
+            let mut counts = RayCounts::default();
+            let mut rejected = Rejected::default();
+            for (x, sums) in row.iter_mut().enumerate() {
+                let pixel = [x as u32, y as u32];
+                for k in range.clone() {
+                    let sample = take_sample(scene, camera, options, pixel, k, &mut counts);
+                    film::add(sums, sample, pixel, k, &mut rejected);
+                }
+            }
+            (counts, rejected)
+        })
+        .collect();
+    let mut counts = RayCounts::default();
+    for (c, rejected) in parts {
+        counts += c;
+        film.note_rejected(rejected);
+    }
+    counts
+}
+
+/// Sample `k` of `pixel`: a function of (seed, pixel, k) alone.
+fn take_sample(
+    scene: &Scene,
+    camera: &Camera,
+    options: &RenderOptions,
+    pixel: [u32; 2],
+    k: u32,
+    counts: &mut RayCounts,
+) -> film::FilmSample {
+    let (width, height) = (options.width, options.height);
+    let index = pixel[1] * width + pixel[0];
+    let mut stream = SampleStream::new(options.sampler, options.seed, index, k);
+    let offset = options.filter.sample(stream.next_2d());
+    let lens = stream.next_2d();
+    let on_film = [
+        (pixel[0] as f32 + offset[0]) / width as f32,
+        (pixel[1] as f32 + offset[1]) / height as f32,
+    ];
+    let ray = camera.ray(on_film, width as f32 / height as f32, lens);
+    options
+        .integrator
+        .radiance(scene, &ray, &mut stream, counts)
+}
