@@ -26,13 +26,18 @@ pub fn floors() -> Result<(), String> {
         println!("floors: every dependency points downward");
         Ok(())
     } else {
-        Err(format!("dependencies that do not point downward:\n  {}", upward.join("\n  ")))
+        Err(format!(
+            "dependencies that do not point downward:\n  {}",
+            upward.join("\n  ")
+        ))
     }
 }
 
 /// The edges of `cargo metadata` that don't lead to a lower floor, in words.
 fn upward_edges(metadata: &Value) -> Result<Vec<String>, String> {
-    let packages = metadata["packages"].as_array().ok_or("cargo metadata lists no packages")?;
+    let packages = metadata["packages"]
+        .as_array()
+        .ok_or("cargo metadata lists no packages")?;
     let mut floor = BTreeMap::new();
     for package in packages {
         let name = package["name"].as_str().unwrap_or_default();
@@ -41,7 +46,11 @@ fn upward_edges(metadata: &Value) -> Result<Vec<String>, String> {
                 floor.insert(name, number);
             }
             None if name == "xtask" => {}
-            None => return Err(format!("{name}: no package.metadata.gonio.floor in its manifest")),
+            None => {
+                return Err(format!(
+                    "{name}: no package.metadata.gonio.floor in its manifest"
+                ));
+            }
         }
     }
     let mut upward = Vec::new();
@@ -78,10 +87,16 @@ pub fn files() -> Result<(), String> {
         }
     }
     if long.is_empty() {
-        println!("files: {} sources, none longer than {LONGEST_FILE} lines", sources.len());
+        println!(
+            "files: {} sources, none longer than {LONGEST_FILE} lines",
+            sources.len()
+        );
         Ok(())
     } else {
-        Err(format!("files longer than {LONGEST_FILE} lines:\n  {}", long.join("\n  ")))
+        Err(format!(
+            "files longer than {LONGEST_FILE} lines:\n  {}",
+            long.join("\n  ")
+        ))
     }
 }
 
@@ -114,13 +129,19 @@ mod tests {
 
     #[test]
     fn an_upward_edge_is_found() {
-        let down = json!({ "packages": [package("a", 0, "libm", None), package("b", 1, "a", None)] });
+        let down =
+            json!({ "packages": [package("a", 0, "libm", None), package("b", 1, "a", None)] });
         assert_eq!(upward_edges(&down), Ok(vec![]));
         let up = json!({ "packages": [package("a", 0, "b", None), package("b", 1, "a", None)] });
-        assert_eq!(upward_edges(&up), Ok(vec!["a (floor 0) → b (floor 1)".to_owned()]));
-        let beside = json!({ "packages": [package("a", 1, "b", None), package("b", 1, "libm", None)] });
+        assert_eq!(
+            upward_edges(&up),
+            Ok(vec!["a (floor 0) → b (floor 1)".to_owned()])
+        );
+        let beside =
+            json!({ "packages": [package("a", 1, "b", None), package("b", 1, "libm", None)] });
         assert_eq!(upward_edges(&beside).map(|v| v.len()), Ok(1));
-        let test_only = json!({ "packages": [package("a", 0, "b", Some("dev")), package("b", 1, "a", None)] });
+        let test_only =
+            json!({ "packages": [package("a", 0, "b", Some("dev")), package("b", 1, "a", None)] });
         assert_eq!(upward_edges(&test_only), Ok(vec![]));
         let unknown = json!({ "packages": [{ "name": "c", "dependencies": [] }] });
         assert!(upward_edges(&unknown).is_err());

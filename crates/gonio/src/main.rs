@@ -1,1 +1,5 @@
-fn main() {}
+//! The `gonio` command.
+
+fn main() -> std::process::ExitCode {
+    gonio::cli::main()
+}
