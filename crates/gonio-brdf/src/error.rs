@@ -51,6 +51,9 @@ pub enum BrdfError {
         /// What, and why.
         what: String,
     },
+    /// Shader code can't be made.
+    #[error("cannot write shader code: {0}")]
+    Record(#[from] gonio_num::expr::RecordError),
     /// A table's file is not what it should be.
     #[error("{}: {place}: found {found}, expected {expected}", path.display())]
     Format {

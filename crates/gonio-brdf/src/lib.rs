@@ -36,6 +36,7 @@ pub mod batch;
 pub mod measured;
 pub mod model;
 pub mod part;
+pub mod record;
 pub mod registry;
 
 pub use brdf::{Brdf, Sample};

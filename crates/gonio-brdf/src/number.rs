@@ -5,6 +5,7 @@
 
 use gonio_num::Real;
 use gonio_num::dual::Dual;
+use gonio_num::expr::Expr;
 use gonio_num::lanes::Lanes;
 
 /// A [`Real`] with which models, tables included, can be evaluated.
@@ -103,5 +104,15 @@ impl<R: Number, const P: usize> Number for Dual<R, P> {
             }
         }
         y
+    }
+}
+
+impl Number for Expr {
+    /// 0: an opaque function can't be recorded. [`crate::record`] refuses models that would call it.
+    fn through<const K: usize, const M: usize>(
+        _x: [Self; K],
+        _f: &dyn Fn([f64; K]) -> [f64; M],
+    ) -> [Self; M] {
+        [Self::zero(); M]
     }
 }
