@@ -24,6 +24,9 @@
 //! Conventions: `wi` points to the light and `wo` to the viewer; both leave the surface, have unit length and are given
 //! in the local frame with normal +z. Below the horizon (z ≤ 0 of either) every function is 0.
 
+// Loops over an index are what vectorises over lanes, and colours are short arrays walked side by side.
+#![allow(clippy::needless_range_loop)]
+
 mod brdf;
 mod check;
 mod error;

@@ -1,8 +1,5 @@
 //! [`Number`], a [`Real`] through which a measured table can be read.
 
-// Loops over an index are what vectorises over lanes.
-#![allow(clippy::needless_range_loop)]
-
 use gonio_num::Real;
 use gonio_num::dual::Dual;
 use gonio_num::expr::Expr;

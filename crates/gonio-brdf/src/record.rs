@@ -4,9 +4,9 @@
 //! the function. WGSL is what is printed; naga makes GLSL, HLSL, MSL and SPIR-V of it.
 
 use crate::{Brdf, BrdfError, Model};
+use gonio_num::Real;
 use gonio_num::Vec3;
 use gonio_num::expr::{Expr, Field, Function, Output, Parameter, record};
-use gonio_num::Real;
 
 /// Records `fn name(wi: vec3<f32>, wo: vec3<f32>) -> vec3<f32>`, f in sr⁻¹ without the cosine.
 ///

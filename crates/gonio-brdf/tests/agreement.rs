@@ -1,6 +1,9 @@
 //! The same bits from single calls, from lanes under each instruction set, and from the recorded graph; and the recorded WGSL is
 //! valid.
 
+// Helpers of tests are tests, and colours are short arrays walked side by side.
+#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
+
 mod common;
 
 use gonio_brdf::batch::{Directions, Samples, eval_on, pdf_on, sample_on};
@@ -60,7 +63,10 @@ fn at(v: &[Vec<f32>; 3], k: usize) -> Vec3<f32> {
 #[test]
 fn lanes_have_the_bits_of_single_calls() {
     let inputs = inputs("lanes");
-    for spec in common::one_at_a_time().into_iter().chain(common::random("lanes", 5)) {
+    for spec in common::one_at_a_time()
+        .into_iter()
+        .chain(common::random("lanes", 5))
+    {
         let model: Model<f32, 3> = spec.build().unwrap();
         for set in InstructionSet::ALL {
             if !set.is_available() {
@@ -68,13 +74,17 @@ fn lanes_have_the_bits_of_single_calls() {
                 continue;
             }
             let mut f = vec![vec![0.0; COUNT]; 3];
-            let [r, g, b] = f.as_mut_slice() else { unreachable!() };
+            let [r, g, b] = f.as_mut_slice() else {
+                unreachable!()
+            };
             eval_on(set, &model, view(&inputs.wi), view(&inputs.wo), [r, g, b]);
             let mut pdf = vec![0.0; COUNT];
             pdf_on(set, &model, view(&inputs.wi), view(&inputs.wo), &mut pdf);
             let mut drawn = vec![vec![0.0f32; COUNT]; 7];
             let mut delta = vec![false; COUNT];
-            let [x, y, z, wr, wg, wb, density] = drawn.as_mut_slice() else { unreachable!() };
+            let [x, y, z, wr, wg, wb, density] = drawn.as_mut_slice() else {
+                unreachable!()
+            };
             let samples = Samples {
                 wi: [x, y, z],
                 weight: [wr, wg, wb],
@@ -88,11 +98,27 @@ fn lanes_have_the_bits_of_single_calls() {
                 let expected = model.eval(wi, wo);
                 let s = model.sample(wo, at(&inputs.u, k).to_array());
                 for c in 0..3 {
-                    assert_eq!(f[c][k].to_bits(), expected[c].to_bits(), "{spec} {set:?} {k}");
-                    assert_eq!(drawn[c][k].to_bits(), s.wi[c].to_bits(), "{spec} {set:?} {k}");
-                    assert_eq!(drawn[3 + c][k].to_bits(), s.weight[c].to_bits(), "{spec} {set:?} {k}");
+                    assert_eq!(
+                        f[c][k].to_bits(),
+                        expected[c].to_bits(),
+                        "{spec} {set:?} {k}"
+                    );
+                    assert_eq!(
+                        drawn[c][k].to_bits(),
+                        s.wi[c].to_bits(),
+                        "{spec} {set:?} {k}"
+                    );
+                    assert_eq!(
+                        drawn[3 + c][k].to_bits(),
+                        s.weight[c].to_bits(),
+                        "{spec} {set:?} {k}"
+                    );
                 }
-                assert_eq!(pdf[k].to_bits(), model.pdf(wi, wo).to_bits(), "{spec} {set:?} {k}");
+                assert_eq!(
+                    pdf[k].to_bits(),
+                    model.pdf(wi, wo).to_bits(),
+                    "{spec} {set:?} {k}"
+                );
                 assert_eq!(drawn[6][k].to_bits(), s.pdf.to_bits(), "{spec} {set:?} {k}");
                 assert_eq!(delta[k], s.delta, "{spec} {set:?} {k}");
             }
@@ -128,7 +154,11 @@ fn recorded_functions_are_valid_and_have_the_same_bits() {
             let drawn = sample.evaluate(&[wo.x, wo.y, wo.z, u.x, u.y, u.z]);
             assert_eq!(drawn[..3], s.wi.to_array(), "{spec} {k}");
             assert_eq!(drawn[3..6], s.weight, "{spec} {k}");
-            assert_eq!(drawn[6..], [s.pdf, f32::from(u8::from(s.delta))], "{spec} {k}");
+            assert_eq!(
+                drawn[6..],
+                [s.pdf, f32::from(u8::from(s.delta))],
+                "{spec} {k}"
+            );
         }
     }
 }

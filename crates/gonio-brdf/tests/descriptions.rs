@@ -1,5 +1,8 @@
 //! Descriptions in words: what is read, and the errors.
 
+// Helpers of tests are tests, and colours are short arrays walked side by side.
+#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
+
 mod common;
 
 use gonio_brdf::{BrdfError, Model, ModelSpec, Value};

@@ -1,5 +1,8 @@
 //! Properties of every model of the registry, over a grid of parameters and directions.
 
+// Helpers of tests are tests, and colours are short arrays walked side by side.
+#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
+
 mod common;
 
 use gonio_brdf::{Brdf, Model, ModelSpec, Number, registry};

@@ -1,5 +1,8 @@
 //! Tables in memory and the MERL format, on tables made from models whose truth is known.
 
+// Helpers of tests are tests, and colours are short arrays walked side by side.
+#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
+
 use gonio_brdf::measured::{Axes, Tabulated, merl};
 use gonio_brdf::model::table::Table;
 use gonio_brdf::{Brdf, BrdfError, Model, ModelSpec};

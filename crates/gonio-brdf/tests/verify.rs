@@ -1,5 +1,8 @@
 //! Every model is held to what it declares, by `gonio-verify`.
 
+// Helpers of tests are tests, and colours are short arrays walked side by side.
+#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
+
 mod common;
 
 use gonio_brdf::{Declares, ModelSpec, check, registry};

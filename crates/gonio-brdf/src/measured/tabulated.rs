@@ -1,5 +1,9 @@
 //! [`Tabulated`], a reflection function as a table in memory (T19).
 
+use super::cells::{
+    cell_solid_angle, clamped, half_difference, luminance, nearest, periodic, ring_cosines,
+    row_cosines, theta, turn,
+};
 use super::choice::Choice;
 use crate::BrdfError;
 use crate::part::geometry::{cosine_density, cosine_hemisphere, polar};
@@ -197,9 +201,9 @@ impl Tabulated {
                 ]
             }
             Axes::Directions { .. } => [
-                clamped(wi.z.acos_() / FRAC_PI_2, shape[0]),
+                clamped(theta(wi) / FRAC_PI_2, shape[0]),
                 periodic(turn(wi), shape[1]),
-                clamped(wo.z.acos_() / FRAC_PI_2, shape[2]),
+                clamped(theta(wo) / FRAC_PI_2, shape[2]),
                 periodic(turn(wo), shape[3]),
             ],
         };
@@ -235,7 +239,7 @@ impl Tabulated {
                 density / (4.0 * Real::cos(theta_d)).max(1e-15)
             }
             Axes::Directions { theta_i, phi_i, .. } => {
-                let i = nearest(wi.z.acos_() / FRAC_PI_2, theta_i);
+                let i = nearest(theta(wi) / FRAC_PI_2, theta_i);
                 let j = nearest(turn(wi), phi_i);
                 let choice = &self.choices[self.outgoing_cell(wo, shape)];
                 choice.probability(i * phi_i + j) / cell_solid_angle(i, theta_i, phi_i)
@@ -246,7 +250,7 @@ impl Tabulated {
 
     /// Draws a direction for `wo`; `None` where that gives nothing.
     pub fn sample(&self, wo: Vec3<f64>, u: [f64; 3]) -> Option<Vec3<f64>> {
-        if !(wo.z > 0.0) {
+        if wo.z.is_nan() || wo.z <= 0.0 {
             return None;
         }
         let wi = if u[2] < COSINE_SHARE {
@@ -314,100 +318,6 @@ impl Tabulated {
     }
 
     fn outgoing_cell(&self, wo: Vec3<f64>, shape: [usize; 4]) -> usize {
-        nearest(wo.z.acos_() / FRAC_PI_2, shape[2]) * shape[3] + nearest(turn(wo), shape[3])
+        nearest(theta(wo) / FRAC_PI_2, shape[2]) * shape[3] + nearest(turn(wo), shape[3])
     }
-}
-
-/// `Real::acos` under a name that the standard library's method doesn't take.
-trait Acos {
-    fn acos_(self) -> f64;
-}
-
-impl Acos for f64 {
-    fn acos_(self) -> f64 {
-        Real::acos(self)
-    }
-}
-
-/// (θh, θd, φd) with φd in [0, π).
-fn half_difference(wi: Vec3<f64>, wo: Vec3<f64>) -> [f64; 3] {
-    let (sum, difference) = (wi + wo, wi - wo);
-    let length = sum.length().max(1e-15);
-    let h = sum * (1.0 / length);
-    let sin_h = (h.x * h.x + h.y * h.y).sqrt();
-    let (cos_phi, sin_phi) = if sin_h > 1e-12 {
-        (h.x / sin_h, h.y / sin_h)
-    } else {
-        (1.0, 0.0)
-    };
-    // wi in the frame whose z axis is h and whose x axis lies in the plane of h and the normal.
-    let x = h.z * (cos_phi * wi.x + sin_phi * wi.y) - sin_h * wi.z;
-    let y = cos_phi * wi.y - sin_phi * wi.x;
-    let phi = Real::atan2(y, x);
-    let phi = if phi < 0.0 { phi + PI } else { phi };
-    [
-        Real::atan2(sin_h, h.z),
-        Real::atan2(difference.length(), length),
-        if phi >= PI { 0.0 } else { phi },
-    ]
-}
-
-/// φ/2π in [0, 1).
-fn turn(w: Vec3<f64>) -> f64 {
-    let t = Real::atan2(w.y, w.x) / TAU;
-    if t < 0.0 { t + 1.0 } else { t }
-}
-
-/// Rec.709 luminance.
-fn luminance([r, g, b]: [f32; 3]) -> f64 {
-    0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
-}
-
-/// The cell that x in [0, 1] lies in.
-fn nearest(x: f64, n: usize) -> usize {
-    ((x * n as f64) as usize).min(n - 1)
-}
-
-/// The centres around x in [0, 1] and the weight of the upper one; constant beyond the outermost.
-fn clamped(x: f64, n: usize) -> (usize, usize, f64) {
-    let f = (x * n as f64 - 0.5).clamp(0.0, (n - 1) as f64);
-    let low = f as usize;
-    (low, (low + 1).min(n - 1), f - low as f64)
-}
-
-/// The centres around x in [0, 1) of an axis that closes on itself.
-fn periodic(x: f64, n: usize) -> (usize, usize, f64) {
-    let f = x * n as f64 + n as f64 - 0.5;
-    let low = f as usize;
-    (low % n, (low + 1) % n, f - low as f64)
-}
-
-/// Cosines of θh at the inner and outer edge of ring `k`.
-fn ring_cosines(k: usize, n: usize) -> (f64, f64) {
-    let edge = |k: usize| {
-        let s = k as f64 / n as f64;
-        if k == n {
-            0.0
-        } else {
-            Real::cos(s * s * FRAC_PI_2)
-        }
-    };
-    (edge(k), edge(k + 1))
-}
-
-/// Cosines of θ at the upper and lower edge of row `k` of n equal steps.
-fn row_cosines(k: usize, n: usize) -> (f64, f64) {
-    let edge = |k: usize| {
-        if k == n {
-            0.0
-        } else {
-            Real::cos(k as f64 / n as f64 * FRAC_PI_2)
-        }
-    };
-    (edge(k), edge(k + 1))
-}
-
-fn cell_solid_angle(row: usize, rows: usize, columns: usize) -> f64 {
-    let (low, high) = row_cosines(row, rows);
-    TAU * (low - high) / columns as f64
 }

@@ -250,7 +250,7 @@ impl<R: Real, const N: usize> TorranceSparrow<R, N> {
 
     /// A direction in the frame of (αx, αy).
     #[inline(always)]
-    fn to_axes(&self, w: Vec3<R>) -> Vec3<R> {
+    fn in_axes(&self, w: Vec3<R>) -> Vec3<R> {
         match self.rotation {
             Some([c, s]) => turned(w, c, -s),
             None => w,
@@ -298,7 +298,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for TorranceSparrow<R, N> {
     #[inline(always)]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
         let up = above(wi, wo);
-        let (wi, wo) = (self.to_axes(wi), self.to_axes(wo));
+        let (wi, wo) = (self.in_axes(wi), self.in_axes(wo));
         let half = Half::new(wi, wo);
         let d = &self.distribution;
         let facets = d.density(half.h) * visibility(self.masking, d, wi, wo, &half);
@@ -312,7 +312,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for TorranceSparrow<R, N> {
     #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
         let up = above(wi, wo);
-        let (wi, wo) = (self.to_axes(wi), self.to_axes(wo));
+        let (wi, wo) = (self.in_axes(wi), self.in_axes(wo));
         let mut density = self.facet_density(wo, &Half::new(wi, wo));
         if let Some(average) = self.interreflection {
             let p = self.lobe(wi.z, wo.z, average).probability;
@@ -323,7 +323,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for TorranceSparrow<R, N> {
 
     #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-        let local = self.to_axes(wo);
+        let local = self.in_axes(wo);
         let d = &self.distribution;
         let h = match d.shape {
             Shape::Ggx => d.sample_visible_ggx(local, u[0], u[1]),
