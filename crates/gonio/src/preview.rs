@@ -3,15 +3,11 @@
 //! Its files are in the repository's `assets/preview`.
 
 use gonio_env::{EnvError, Environment};
-use gonio_image::tonemap::ToneMap;
 use gonio_scene::{Files, LoadOptions, Scene, SceneError};
 use std::path::Path;
 
 /// The name of the material that the preview is about.
 pub const OBJECT: &str = "object";
-
-/// The tone map that suits it.
-pub const TONE_MAP: ToneMap = ToneMap::AgX;
 
 const SCENE: &[u8] = include_bytes!("../../../assets/preview/scene.toml");
 const BALL: &[u8] = include_bytes!("../../../assets/preview/ball.glb");

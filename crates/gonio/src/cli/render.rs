@@ -70,7 +70,7 @@ pub(super) struct Arguments {
     /// Exposure of PNG files, in stops
     #[arg(long, value_name = "EV", default_value = "0", value_parser = parse::finite, allow_hyphen_values = true)]
     exposure: f32,
-    /// Tone map of PNG files: linear, aces, agx or pbr-neutral [default: agx for the preview, else pbr-neutral]
+    /// Tone map of PNG files: linear, aces, agx or pbr-neutral [default: pbr-neutral]
     #[arg(long)]
     tonemap: Option<ToneMap>,
     /// No progress bar and no summary
@@ -148,6 +148,9 @@ enum SamplerName {
     /// Independent random numbers
     Independent,
 }
+
+/// The tone map of PNG files unless another is asked for.
+const TONE_MAP: ToneMap = ToneMap::PbrNeutral;
 
 /// What a rendering did, for people and for programs.
 #[derive(serde::Serialize)]
@@ -354,11 +357,7 @@ fn write(
             .layers(metadata(arguments, options, film))
             .write_exr(path),
         Some("png") => {
-            let tonemap = arguments.tonemap.unwrap_or(if arguments.scene.is_none() {
-                preview::TONE_MAP
-            } else {
-                ToneMap::PbrNeutral
-            });
+            let tonemap = arguments.tonemap.unwrap_or(TONE_MAP);
             film.image().write_png(path, tonemap, arguments.exposure)
         }
         _ => film.image().write(path),
