@@ -1,6 +1,7 @@
 use super::*;
 use crate::spectrum::{Illuminant, SpectralColumns, Spectrum};
 use gonio_num::Real;
+use gonio_num::lanes::Lanes;
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -106,6 +107,9 @@ fn srgb_transfer() {
         assert_eq!(srgb_encode(-linear), -srgb_encode(linear));
     }
     assert!((srgb_decode(0.5f64) - 0.214_041_140_482_232).abs() < 1e-12);
+    let values = [-0.5f32, 0.002, 0.0031, 0.7];
+    assert_eq!(srgb_encode(Lanes(values)).0, values.map(srgb_encode));
+    assert_eq!(srgb_decode(Lanes(values)).0, values.map(srgb_decode));
     // Every 8-bit code returns, in f32.
     for code in 0..=255u8 {
         let linear = srgb_decode(f32::from(code) / 255.0);

@@ -1,5 +1,7 @@
 use super::*;
 use crate::colour::{white_of, xy_of_xyz};
+use gonio_num::dual::Dual;
+use gonio_num::lanes::Lanes;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -78,6 +80,21 @@ fn planck_in_f32_and_at_the_edges() {
     assert!((planck(1e7, 1e6) / rayleigh - (1.0 - 0.5 * x)).abs() < 1e-10);
     for t in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(Spectrum::black_body(t).is_err());
+    }
+}
+
+#[test]
+fn planck_over_lanes_and_dual_numbers() {
+    let lambda = [360.0f32, 555.0, 830.0, 2000.0];
+    let wide = planck(Lanes(lambda), Lanes::splat(2856.0));
+    assert_eq!(wide.0, lambda.map(|l| planck(l, 2856.0)));
+    // Planck's law in terms of x = c₂/λT: d ln L/d ln T = x/(1 − e⁻ˣ), d ln L/d ln λ = that − 5.
+    for (l, t) in [(400.0, 3000.0), (1e6, 2000.0)] {
+        let d = planck(Dual::<f64, 2>::variable(l, 0), Dual::variable(t, 1));
+        let x = SECOND_RADIATION_CONSTANT * 1e9 / (l * t);
+        let by_t = x / (1.0 - (-x).exp());
+        assert!((d.partials[1] * t / d.value / by_t - 1.0).abs() < 1e-8);
+        assert!((d.partials[0] * l / d.value - (by_t - 5.0)).abs() < 1e-8);
     }
 }
 

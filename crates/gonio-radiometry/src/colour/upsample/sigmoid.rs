@@ -26,8 +26,13 @@ impl SigmoidPolynomial {
     /// The reflectance at `lambda_nm`.
     #[inline(always)]
     pub fn at<R: Real>(&self, lambda_nm: R) -> R {
-        let c = &self.coefficients;
-        sigmoid((R::lit(c[0]) * lambda_nm + R::lit(c[1])) * lambda_nm + R::lit(c[2]))
+        let [c0, c1, c2] = self.coefficients;
+        // Around a wavelength in the middle the terms are smaller, and cancel less in f32.
+        let middle = 555.0;
+        let d = lambda_nm - R::lit(middle);
+        let slope = R::lit(2.0 * c0 * middle + c1);
+        let value = R::lit((c0 * middle + c1) * middle + c2);
+        sigmoid((R::lit(c0) * d + slope) * d + value)
     }
 
     /// The wavelength [nm] of the largest or smallest value; `None` if the polynomial is linear.

@@ -12,7 +12,8 @@ use std::sync::LazyLock;
 pub struct Fit {
     /// The reflectance.
     pub sigmoid: SigmoidPolynomial,
-    /// ΔE*ab (1976) between its colour and the one asked for; below 10⁻⁶ where the family has the colour.
+    /// ΔE*ab (1976) between its colour and the one asked for: below 10⁻⁶ where the family has the colour, as for all of
+    /// sRGB; below 10⁻³ where such a colour is darker than 2 × 10⁻⁴, since its spectrum is a spike.
     pub delta_e: f64,
     /// Evaluations of the colour that it took.
     pub evaluations: u32,
@@ -101,8 +102,7 @@ impl Solver {
                 step *= 0.5;
             }
         }
-        let steps = if reached < 1.0 { 200 } else { 20 };
-        let (state, _) = self.descend(&self.fine, rgb, state, steps, REACHED, &mut evaluations);
+        let (state, _) = self.descend(&self.fine, rgb, state, 60, REACHED, &mut evaluations);
         self.fit(state.sigmoid(), rgb, evaluations)
     }
 

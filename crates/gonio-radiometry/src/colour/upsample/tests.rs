@@ -3,6 +3,7 @@ use crate::RadiometryError;
 use crate::colour::{RgbSpace, rgb_of_emission, rgb_of_reflectance};
 use crate::sequence::Rng;
 use crate::spectrum::{Illuminant, Spectrum};
+use gonio_num::lanes::Lanes;
 use std::path::Path;
 
 fn back(sigmoid: SigmoidPolynomial) -> [f64; 3] {
@@ -52,6 +53,27 @@ fn colours_of_srgb_return() {
 }
 
 #[test]
+fn dark_and_light_extremes_return() {
+    for e in [-9, -6, -4, -3] {
+        let v = 10f64.powi(e);
+        for mask in 1..7 {
+            let pick =
+                |on: f64, off: f64| [0, 1, 2].map(|k| if mask >> k & 1 == 1 { on } else { off });
+            for rgb in [
+                pick(v, 0.0),
+                pick(1.0 - v, 1.0),
+                pick(1.0 - v, 0.0),
+                pick(v, 1.0),
+            ] {
+                let fit = Solver::srgb().solve(rgb);
+                assert!(fit.delta_e < 1e-3, "{rgb:?}: {fit:?}");
+                assert!(largest_difference(back(fit.sigmoid), rgb) < 1e-4, "{rgb:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn spectra_are_smooth_and_within_zero_and_one() {
     for rgb in grid(4) {
         let s = Solver::srgb().solve(rgb).sigmoid;
@@ -65,8 +87,13 @@ fn spectra_are_smooth_and_within_zero_and_one() {
         assert!(jump < 0.07, "{rgb:?}: {jump}");
         let largest = values.iter().copied().fold(0.0, f64::max);
         assert!(s.max_value() >= largest && s.max_value() < largest + 1e-3);
-        let narrow = f64::from(s.at(555.0f32));
-        assert!((narrow - s.at(555.0)).abs() < 1e-3, "{rgb:?}");
+        for l in [400.0f32, 500.0, 555.0, 650.0] {
+            // The terms of the polynomial reach some 100 for edges that rise by 0.06 a nm.
+            let error = f64::from(s.at(l)) - s.at(f64::from(l));
+            assert!(error.abs() < 1e-5, "{rgb:?}: {error}");
+        }
+        let wide = s.at(Lanes::<4>([400.0, 500.0, 555.0, 650.0]));
+        assert_eq!(wide.0, [400.0, 500.0, 555.0, 650.0].map(|l: f32| s.at(l)));
     }
 }
 
