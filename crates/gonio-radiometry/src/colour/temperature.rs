@@ -7,7 +7,7 @@ use crate::spectrum::{BlackBody, Spectrum};
 /// The temperature of the black body whose colour is nearest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ColourTemperature {
-    /// The temperature [K].
+    /// The temperature \[K\].
     pub kelvin: f64,
     /// Distance from the black body in CIE 1960 (u, v): above 0 towards green, below 0 towards magenta. Beyond 0.05 the
     /// temperature means nothing.

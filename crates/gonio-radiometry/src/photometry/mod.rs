@@ -19,13 +19,13 @@ use crate::quantity::{Luminance, LuminousEfficacy, Quantity, kind};
 use crate::spectrum::{BlackBody, Observer, Spectrum, VISIBLE};
 use gonio_num::Real;
 
-/// K_cd [lm/W]: the luminous efficacy of radiation of 540 × 10¹² Hz, exact, the definition of the candela.
+/// K_cd \[lm/W\]: the luminous efficacy of radiation of 540 × 10¹² Hz, exact, the definition of the candela.
 pub const LUMINOUS_EFFICACY_540_THZ: f64 = 683.0;
 
-/// The wavelength of 540 × 10¹² Hz in standard air [nm].
+/// The wavelength of 540 × 10¹² Hz in standard air \[nm\].
 pub const LAMBDA_540_THZ_NM: f64 = 555.016;
 
-/// K_m [lm/W]: the largest luminous efficacy, at 555 nm, K_cd / V(555.016 nm) = 683.002.
+/// K_m \[lm/W\]: the largest luminous efficacy, at 555 nm, K_cd / V(555.016 nm) = 683.002.
 ///
 /// Source: ISO/CIE 23539, which gives these six digits.
 pub const MAX_LUMINOUS_EFFICACY: f64 = 683.002;
@@ -44,13 +44,13 @@ pub fn efficacy_at(lambda_nm: f64) -> LuminousEfficacy {
 
 /// K_m ∫ S(λ) V(λ) dλ: the photometric value of a spectral one, in lumens per (unit of S × nm / W).
 ///
-/// A spectral flux [W/nm] gives lm, a spectral irradiance lx, a spectral intensity cd.
+/// A spectral flux \[W/nm\] gives lm, a spectral irradiance lx, a spectral intensity cd.
 pub fn photometric_of(spectrum: &Spectrum) -> f64 {
     let v = &Observer::cie_1931().y;
     MAX_LUMINOUS_EFFICACY * Spectrum::integrate_product(&[spectrum, v], VISIBLE)
 }
 
-/// Luminance of a spectral radiance [W m⁻² sr⁻¹ nm⁻¹].
+/// Luminance of a spectral radiance \[W m⁻² sr⁻¹ nm⁻¹\].
 pub fn luminance_of(spectrum: &Spectrum) -> Luminance {
     Luminance::new(photometric_of(spectrum))
 }

@@ -19,7 +19,7 @@ pub trait Kind: Copy + 'static {
 
 macro_rules! kinds {
     ($($name:ident $label:literal $unit:literal [$w:literal $lm:literal $s:literal $m:literal $sr:literal] $scale:literal;)*) => {$(
-        #[doc = concat!("The kind of ", $label, " [", $unit, "].")]
+        #[doc = concat!("The kind of ", $label, " \\[", $unit, "\\].")]
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub struct $name;
         impl Kind for $name {

@@ -233,31 +233,31 @@ macro_rules! aliases {
 }
 
 aliases! {
-    Length: "Length [m].";
-    Area: "Area [m²].";
-    ProjectedArea: "Area projected along a direction, A cosθ [m²].";
-    Time: "Time [s].";
-    Wavelength: "A wavelength, or a range of wavelengths [nm].";
-    SolidAngle: "Solid angle Ω [sr] (T2).";
-    ProjectedSolidAngle: "Solid angle weighted by the cosine, ∫ cosθ dω [sr].";
-    Etendue: "Throughput of a beam, ∫∫ cosθ dω dA [m² sr].";
-    RadiantEnergy: "Radiant energy Q [J].";
-    RadiantFlux: "Radiant flux, or power, Φ [W].";
-    RadiantIntensity: "Radiant intensity I [W/sr].";
-    Irradiance: "Irradiance E: flux that arrives, per area [W/m²] (T6).";
-    RadiantExitance: "Radiant exitance M: flux that leaves, per area [W/m²] (T7).";
-    Radiance: "Radiance L [W m⁻² sr⁻¹] (T5).";
-    ReflectanceDistribution: "Value of a BRDF [sr⁻¹] (T8).";
-    SpectralFlux: "Radiant flux per wavelength [W/nm].";
-    SpectralIntensity: "Radiant intensity per wavelength [W sr⁻¹ nm⁻¹].";
-    SpectralIrradiance: "Irradiance per wavelength [W m⁻² nm⁻¹].";
-    SpectralExitance: "Radiant exitance per wavelength [W m⁻² nm⁻¹].";
-    SpectralRadiance: "Radiance per wavelength [W m⁻² sr⁻¹ nm⁻¹].";
-    LuminousEnergy: "Luminous energy [lm s].";
-    LuminousFlux: "Luminous flux [lm].";
-    LuminousIntensity: "Luminous intensity [cd].";
-    Illuminance: "Illuminance: luminous flux that arrives, per area [lx].";
-    LuminousExitance: "Luminous exitance: luminous flux that leaves, per area [lm/m²].";
-    Luminance: "Luminance [cd/m²], also called nit.";
-    LuminousEfficacy: "Luminous efficacy [lm/W].";
+    Length: "Length \\[m\\].";
+    Area: "Area \\[m²\\].";
+    ProjectedArea: "Area projected along a direction, A cosθ \\[m²\\].";
+    Time: "Time \\[s\\].";
+    Wavelength: "A wavelength, or a range of wavelengths \\[nm\\].";
+    SolidAngle: "Solid angle Ω \\[sr\\] (T2).";
+    ProjectedSolidAngle: "Solid angle weighted by the cosine, ∫ cosθ dω \\[sr\\].";
+    Etendue: "Throughput of a beam, ∫∫ cosθ dω dA \\[m² sr\\].";
+    RadiantEnergy: "Radiant energy Q \\[J\\].";
+    RadiantFlux: "Radiant flux, or power, Φ \\[W\\].";
+    RadiantIntensity: "Radiant intensity I \\[W/sr\\].";
+    Irradiance: "Irradiance E: flux that arrives, per area \\[W/m²\\] (T6).";
+    RadiantExitance: "Radiant exitance M: flux that leaves, per area \\[W/m²\\] (T7).";
+    Radiance: "Radiance L \\[W m⁻² sr⁻¹\\] (T5).";
+    ReflectanceDistribution: "Value of a BRDF \\[sr⁻¹\\] (T8).";
+    SpectralFlux: "Radiant flux per wavelength \\[W/nm\\].";
+    SpectralIntensity: "Radiant intensity per wavelength \\[W sr⁻¹ nm⁻¹\\].";
+    SpectralIrradiance: "Irradiance per wavelength \\[W m⁻² nm⁻¹\\].";
+    SpectralExitance: "Radiant exitance per wavelength \\[W m⁻² nm⁻¹\\].";
+    SpectralRadiance: "Radiance per wavelength \\[W m⁻² sr⁻¹ nm⁻¹\\].";
+    LuminousEnergy: "Luminous energy \\[lm s\\].";
+    LuminousFlux: "Luminous flux \\[lm\\].";
+    LuminousIntensity: "Luminous intensity \\[cd\\].";
+    Illuminance: "Illuminance: luminous flux that arrives, per area \\[lx\\].";
+    LuminousExitance: "Luminous exitance: luminous flux that leaves, per area \\[lm/m²\\].";
+    Luminance: "Luminance \\[cd/m²\\], also called nit.";
+    LuminousEfficacy: "Luminous efficacy \\[lm/W\\].";
 }

@@ -3,13 +3,13 @@
 use crate::RadiometryError;
 use gonio_num::Real;
 
-/// c₁L = 2hc² [W m² sr⁻¹], from the exact h and c of the SI of 2019.
+/// c₁L = 2hc² \[W m² sr⁻¹\], from the exact h and c of the SI of 2019.
 pub const FIRST_RADIATION_CONSTANT: f64 = 2.0 * PLANCK * LIGHT_SPEED * LIGHT_SPEED;
 
-/// c₂ = hc/k [m K], from the exact h, c and k of the SI of 2019: 1.438 776 877… × 10⁻².
+/// c₂ = hc/k \[m K\], from the exact h, c and k of the SI of 2019: 1.438 776 877… × 10⁻².
 pub const SECOND_RADIATION_CONSTANT: f64 = PLANCK * LIGHT_SPEED / BOLTZMANN;
 
-/// The Stefan–Boltzmann constant σ = 2π⁵k⁴/(15h³c²) [W m⁻² K⁻⁴]: 5.670 374 419… × 10⁻⁸.
+/// The Stefan–Boltzmann constant σ = 2π⁵k⁴/(15h³c²) \[W m⁻² K⁻⁴\]: 5.670 374 419… × 10⁻⁸.
 pub const STEFAN_BOLTZMANN: f64 = 2.0
     * (std::f64::consts::PI
         * std::f64::consts::PI
@@ -22,22 +22,22 @@ pub const STEFAN_BOLTZMANN: f64 = 2.0
     * (BOLTZMANN / PLANCK)
     / (15.0 * LIGHT_SPEED * LIGHT_SPEED);
 
-/// Wien's displacement constant b [m K]: the radiance per wavelength peaks at λ = b/T. b = c₂/x with x = 5(1 − e⁻ˣ).
+/// Wien's displacement constant b \[m K\]: the radiance per wavelength peaks at λ = b/T. b = c₂/x with x = 5(1 − e⁻ˣ).
 pub const WIEN_DISPLACEMENT: f64 = SECOND_RADIATION_CONSTANT / 4.965_114_231_744_276;
 
-/// h [J s].
+/// h \[J s\].
 const PLANCK: f64 = 6.626_070_15e-34;
-/// c [m s⁻¹].
+/// c \[m s⁻¹\].
 const LIGHT_SPEED: f64 = 299_792_458.0;
-/// k [J K⁻¹].
+/// k \[J K⁻¹\].
 const BOLTZMANN: f64 = 1.380_649e-23;
 
-/// Spectral radiance of a black body [W m⁻² sr⁻¹ nm⁻¹].
+/// Spectral radiance of a black body \[W m⁻² sr⁻¹ nm⁻¹\].
 ///
 /// L(λ, T) = c₁L / (λ⁵ (e^(c₂/λT) − 1))
 ///
-/// - `lambda_nm`: wavelength in vacuum [nm], positive
-/// - `temperature_k`: [K], positive
+/// - `lambda_nm`: wavelength in vacuum \[nm\], positive
+/// - `temperature_k`: \[K\], positive
 ///
 /// Never NaN for such arguments; 0 where the exponential overflows. Source: Planck 1901; constants of the SI of 2019.
 ///
@@ -80,7 +80,7 @@ pub struct BlackBody {
 }
 
 impl BlackBody {
-    /// Radiance [W m⁻² sr⁻¹ nm⁻¹] at `temperature_k` kelvin.
+    /// Radiance \[W m⁻² sr⁻¹ nm⁻¹\] at `temperature_k` kelvin.
     ///
     /// # Errors
     /// If the temperature isn't positive and finite.
@@ -107,17 +107,17 @@ impl BlackBody {
         }
     }
 
-    /// The temperature [K].
+    /// The temperature \[K\].
     pub fn temperature_k(self) -> f64 {
         self.temperature_k
     }
 
-    /// The wavelength [nm] of the largest radiance per wavelength, b/T (Wien).
+    /// The wavelength \[nm\] of the largest radiance per wavelength, b/T (Wien).
     pub fn peak_nm(self) -> f64 {
         WIEN_DISPLACEMENT * 1e9 / self.temperature_k
     }
 
-    /// Radiance over all wavelengths [W m⁻² sr⁻¹], σT⁴/π (Stefan–Boltzmann), times the scale.
+    /// Radiance over all wavelengths \[W m⁻² sr⁻¹\], σT⁴/π (Stefan–Boltzmann), times the scale.
     pub fn total(self) -> f64 {
         let t2 = self.temperature_k * self.temperature_k;
         self.scale * STEFAN_BOLTZMANN * t2 * t2 / std::f64::consts::PI

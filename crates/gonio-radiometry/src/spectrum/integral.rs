@@ -3,12 +3,12 @@
 use super::{Spectrum, WavelengthRange};
 
 impl Spectrum {
-    /// ∫ S(λ) dλ over `range` [unit of the spectrum × nm]. See [`Spectrum::integrate_product`].
+    /// ∫ S(λ) dλ over `range` \[unit of the spectrum × nm\]. See [`Spectrum::integrate_product`].
     pub fn integrate(&self, range: WavelengthRange) -> f64 {
         Self::integrate_product(&[self], range)
     }
 
-    /// ∫ S₁(λ) S₂(λ) … dλ over `range` [product of the units × nm].
+    /// ∫ S₁(λ) S₂(λ) … dλ over `range` \[product of the units × nm\].
     ///
     /// The rule: Simpson's, between neighbouring points of all the tables together. It is exact (to rounding) for a product
     /// of up to three tables or constants, since that is piecewise cubic. If any factor is smooth (a black body, a sigmoid, a

@@ -40,12 +40,12 @@ use crate::colour::upsample::SigmoidPolynomial;
 use std::fmt;
 use std::sync::Arc;
 
-/// A range of wavelengths [nm].
+/// A range of wavelengths \[nm\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WavelengthRange {
-    /// The shortest wavelength [nm].
+    /// The shortest wavelength \[nm\].
     pub min_nm: f64,
-    /// The longest wavelength [nm].
+    /// The longest wavelength \[nm\].
     pub max_nm: f64,
 }
 
@@ -64,7 +64,7 @@ impl WavelengthRange {
         }
     }
 
-    /// Its width [nm]; 0 if empty.
+    /// Its width \[nm\]; 0 if empty.
     pub fn width_nm(self) -> f64 {
         (self.max_nm - self.min_nm).max(0.0)
     }
@@ -127,7 +127,7 @@ impl Spectrum {
         )?)))
     }
 
-    /// Radiance of a black body [W m⁻² sr⁻¹ nm⁻¹] at `temperature_k` kelvin.
+    /// Radiance of a black body \[W m⁻² sr⁻¹ nm⁻¹\] at `temperature_k` kelvin.
     ///
     /// # Errors
     /// If the temperature isn't positive and finite.

@@ -6,19 +6,19 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// The largest file that is read [bytes]: a thousand columns by 1 nm stay well below it.
+/// The largest file that is read \[bytes\]: a thousand columns by 1 nm stay well below it.
 const MAX_BYTES: u64 = 16 << 20;
 
 /// A table of spectra that share their wavelengths.
 ///
-/// The text: one row a wavelength [nm], strictly increasing, then one value a column, separated by commas, semicolons,
+/// The text: one row a wavelength \[nm\], strictly increasing, then one value a column, separated by commas, semicolons,
 /// tabs or spaces. "#" begins a comment; empty lines are skipped. If the first row doesn't begin with a number it names the
 /// columns. This covers `.csv` and `.spd` files.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpectralColumns {
     /// Names of the columns; empty if the text has none.
     pub names: Vec<String>,
-    /// The wavelengths [nm], positive and strictly increasing.
+    /// The wavelengths \[nm\], positive and strictly increasing.
     pub lambda_nm: Vec<f64>,
     /// The values, column by column.
     pub values: Vec<Vec<f64>>,

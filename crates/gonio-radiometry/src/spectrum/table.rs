@@ -174,7 +174,7 @@ impl Irregular {
         )
     }
 
-    /// The wavelengths of the points [nm], strictly increasing.
+    /// The wavelengths of the points \[nm\], strictly increasing.
     pub fn lambda_nm(&self) -> &[f64] {
         &self.lambda_nm
     }

@@ -76,7 +76,7 @@ impl RgbIlluminant {
         }
     }
 
-    /// The value at `lambda_nm` [per nm].
+    /// The value at `lambda_nm` \[per nm\].
     pub fn at(&self, lambda_nm: f64) -> f64 {
         self.rgb.at(lambda_nm) * self.white.at(lambda_nm)
     }

@@ -7,12 +7,12 @@ use gonio_num::Real;
 /// Values in [0, 1] for any coefficients. Source: Jakob and Hanika 2019, eq. 5 and 6.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SigmoidPolynomial {
-    /// c₀ [nm⁻²], c₁ [nm⁻¹] and c₂.
+    /// c₀ \[nm⁻²\], c₁ \[nm⁻¹\] and c₂.
     pub coefficients: [f64; 3],
 }
 
 impl SigmoidPolynomial {
-    /// With the coefficients c₀ [nm⁻²], c₁ [nm⁻¹], c₂.
+    /// With the coefficients c₀ \[nm⁻²\], c₁ \[nm⁻¹\], c₂.
     pub const fn new(coefficients: [f64; 3]) -> Self {
         Self { coefficients }
     }
@@ -35,7 +35,7 @@ impl SigmoidPolynomial {
         sigmoid((R::lit(c0) * d + slope) * d + value)
     }
 
-    /// The wavelength [nm] of the largest or smallest value; `None` if the polynomial is linear.
+    /// The wavelength \[nm\] of the largest or smallest value; `None` if the polynomial is linear.
     pub fn extremum_nm(&self) -> Option<f64> {
         let [c0, c1, _] = self.coefficients;
         (c0 != 0.0).then(|| -c1 / (2.0 * c0))

@@ -26,7 +26,7 @@ static SRGB: LazyLock<RgbToSpectrum> =
 /// Largest table: 3 × 128³ × 3 coefficients, 75 MB.
 const MAX_RESOLUTION: usize = 128;
 const DEFAULT_RESOLUTION: usize = 32;
-/// What may follow a table in its file [bytes].
+/// What may follow a table in its file \[bytes\].
 const MAX_APPENDIX: u64 = 1 << 20;
 
 /// Solves one pyramid, of the colours whose component `largest` is the largest, into `pyramid`.
