@@ -3,7 +3,7 @@
 //! Lr(ωr) = Σᵢ Lᵢ f cosθᵢ over point, spot and directional lights (12), plus ∫ Li f cosθi dωi over area lights and the
 //! environment (13).
 
-use super::vertex::{Arrival, Vertex, arrive, environment_radiance};
+use super::vertex::{Vertex, arrive, environment_radiance};
 use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::SampleStream;
@@ -57,11 +57,11 @@ impl Direct {
         };
         let ray = vertex.point.spawn_ray(drawn.wi);
         let (radiance, density) = match arrive(scene, &ray, stream, counts) {
-            Arrival::Infinity => (
+            None => (
                 environment_radiance(scene, drawn.wi),
                 scene.lights.environment().map_or(0.0, |e| e.pdf(drawn.wi)),
             ),
-            Arrival::Surface(next) => (
+            Some(next) => (
                 scene.emitted(&next.point, next.wo_world),
                 density_of_light(scene, vertex, &next, drawn.wi),
             ),

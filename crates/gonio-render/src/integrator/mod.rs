@@ -12,7 +12,6 @@ use crate::film::{FilmSample, FirstSurface};
 use gonio_radiometry::sequence::SampleStream;
 use gonio_scene::{Ray, Scene};
 use std::ops::AddAssign;
-use vertex::Arrival;
 
 /// How the reflection equation is solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,11 +46,11 @@ impl Integrator {
         counts: &mut RayCounts,
     ) -> FilmSample {
         match vertex::arrive(scene, ray, stream, counts) {
-            Arrival::Infinity => FilmSample {
+            None => FilmSample {
                 radiance: vertex::environment_radiance(scene, ray.direction),
                 first: None,
             },
-            Arrival::Surface(vertex) => {
+            Some(vertex) => {
                 let first = Some(FirstSurface {
                     albedo: vertex.albedo,
                     normal: vertex.frame.n.to_array(),

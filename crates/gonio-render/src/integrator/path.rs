@@ -1,6 +1,6 @@
 //! Path tracing: the reflection equation, applied again to the light that other surfaces reflect (Kajiya 1986).
 
-use super::vertex::{Arrival, Vertex, arrive, environment_radiance};
+use super::vertex::{Vertex, arrive, environment_radiance};
 use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
 use gonio_radiometry::sequence::SampleStream;
 use gonio_scene::Scene;
@@ -73,7 +73,7 @@ impl Path {
                 }
             };
             match arrive(scene, &ray, stream, counts) {
-                Arrival::Infinity => {
+                None => {
                     let radiance = environment_radiance(scene, drawn.wi);
                     if radiance != [0.0; 3] {
                         let w = weight(scene.lights.pdf_environment(drawn.wi));
@@ -81,7 +81,7 @@ impl Path {
                     }
                     break;
                 }
-                Arrival::Surface(next) => {
+                Some(next) => {
                     let radiance = scene.emitted(&next.point, next.wo_world);
                     if radiance != [0.0; 3] {
                         let density = scene.lights.pdf_area(vertex.point.p, &next.point, drawn.wi);

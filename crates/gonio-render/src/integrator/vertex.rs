@@ -31,27 +31,20 @@ pub struct Vertex<'a> {
     pub distance: f32,
 }
 
-/// Where a ray ended.
-pub(super) enum Arrival<'a> {
-    Infinity,
-    Surface(Vertex<'a>),
-}
-
-/// Follows `ray` to the first surface that stops it; a surface of opacity α stops it with probability α.
+/// Follows `ray` to the first surface that stops it; a surface of opacity α stops it with probability α. Nothing if the
+/// ray goes on to infinity.
 pub(super) fn arrive<'a>(
     scene: &'a Scene,
     ray: &Ray,
     stream: &mut SampleStream,
     counts: &mut RayCounts,
-) -> Arrival<'a> {
+) -> Option<Vertex<'a>> {
     let wo_world = -ray.direction;
     let mut ray = *ray;
     let mut travelled = 0.0;
     for passed in 0..MAX_PASSED {
         counts.nearest += 1;
-        let Some(point) = scene.intersect(&ray) else {
-            return Arrival::Infinity;
-        };
+        let point = scene.intersect(&ray)?;
         let shading = scene.shade(&point, wo_world);
         if shading.alpha < 1.0 {
             stream.seek(dimension::OPACITY + passed);
@@ -63,7 +56,7 @@ pub(super) fn arrive<'a>(
                 continue;
             }
         }
-        return Arrival::Surface(Vertex {
+        return Some(Vertex {
             frame: shading.frame,
             wo: shading.frame.to_local(wo_world),
             wo_world,
@@ -74,7 +67,7 @@ pub(super) fn arrive<'a>(
             point,
         });
     }
-    Arrival::Infinity
+    None
 }
 
 /// Radiance of the environment from direction `d`; black without one.
