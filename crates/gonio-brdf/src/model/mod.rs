@@ -35,20 +35,18 @@ macro_rules! models {
         /// Every model's entry.
         pub(crate) const INFOS: &[ModelInfo] = &[$($module::INFO,)*];
 
+        // Not marked for inlining: a caller would get the code of every model, a sum of sums that of every pair. Batches
+        // choose the model once, through `visit`.
         impl<R: Number, const N: usize> Brdf<R, N> for Model<R, N> {
-            #[inline(always)]
             fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
                 match self { $(Self::$variant(m) => m.eval(wi, wo),)* }
             }
-            #[inline(always)]
             fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
                 match self { $(Self::$variant(m) => m.pdf(wi, wo),)* }
             }
-            #[inline(always)]
             fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
                 match self { $(Self::$variant(m) => m.sample(wo, u),)* }
             }
-            #[inline(always)]
             fn albedo_estimate(&self, wo: Vec3<R>) -> R {
                 match self { $(Self::$variant(m) => m.albedo_estimate(wo),)* }
             }

@@ -1,0 +1,152 @@
+//! Values that are known from elsewhere.
+
+// Helpers of tests are tests, and colours are short arrays walked side by side.
+#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
+
+use gonio_brdf::{Brdf, Model, ModelSpec};
+use gonio_num::Vec3;
+use std::f64::consts::{FRAC_1_PI, PI};
+
+const UP: Vec3<f64> = Vec3::new(0.0, 0.0, 1.0);
+
+fn model(text: &str) -> Model<f64, 3> {
+    ModelSpec::parse(text).unwrap().build().unwrap()
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-12 * b.abs().max(1.0)
+}
+
+fn tilted(theta_deg: f64, phi_deg: f64) -> Vec3<f64> {
+    let (t, p) = (theta_deg.to_radians(), phi_deg.to_radians());
+    Vec3::new(t.sin() * p.cos(), t.sin() * p.sin(), t.cos())
+}
+
+#[test]
+fn lambertian_is_reflectance_over_pi() {
+    let f = model("lambertian:0.2/0.5/0.8").eval(UP, tilted(60.0, 10.0));
+    for (f, rho) in f.into_iter().zip([0.2, 0.5, 0.8]) {
+        assert!(near(f, rho * FRAC_1_PI));
+    }
+}
+
+#[test]
+fn a_mirror_reflects_into_the_mirror_direction() {
+    let s = model("mirror:0.25").sample(Vec3::new(0.36, 0.48, 0.8), [0.3; 3]);
+    assert_eq!(s.wi, Vec3::new(-0.36, -0.48, 0.8));
+    assert!(s.delta && s.pdf == 1.0 && s.weight == [0.25; 3]);
+    // Glass of index 1.5 reflects 4 % at normal incidence.
+    let s = model("mirror:ior=1.5").sample(UP, [0.0; 3]);
+    assert!(near(s.weight[0], 0.04));
+    assert_eq!(model("mirror").sample(-UP, [0.5; 3]).pdf, 0.0);
+}
+
+#[test]
+fn phong_at_its_peak_and_at_60_degrees_from_it() {
+    let m = model("phong:diffuse=0,specular=1,exponent=4");
+    assert!(near(m.eval(UP, UP)[0], 6.0 / (2.0 * PI)));
+    assert!(near(
+        m.eval(tilted(60.0, 0.0), UP)[0],
+        6.0 / (2.0 * PI) / 16.0
+    ));
+    let published = model("phong:diffuse=0,specular=1,exponent=4,normalisation=published");
+    assert!(near(published.eval(tilted(60.0, 0.0), UP)[0], 1.0 / 16.0));
+}
+
+#[test]
+fn blinn_phong_uses_the_half_vector() {
+    let m = model("blinn-phong:diffuse=0,specular=1,exponent=4,normalisation=published");
+    // Light at 60°, viewer at the normal: the half vector stands at 30°, cos⁴ = 9/16.
+    assert!(near(m.eval(tilted(60.0, 0.0), UP)[0], 9.0 / 16.0));
+    // p = 2: 8π (1/2 + 2)/(4·6) = 5π/6 is the albedo at normal incidence.
+    let m = model("blinn-phong:diffuse=0,specular=1,exponent=2");
+    assert!(near(m.eval(UP, UP)[0], 6.0 / (5.0 * PI)));
+}
+
+#[test]
+fn oren_nayar_without_roughness_is_lambertian_and_brightens_towards_the_light() {
+    for form in ["qualitative", "full"] {
+        let smooth = model(&format!("oren-nayar:0.5,sigma_deg=0,form={form}"));
+        assert!(near(
+            smooth.eval(tilted(50.0, 0.0), tilted(70.0, 40.0))[0],
+            0.5 * FRAC_1_PI
+        ));
+        let rough = model(&format!("oren-nayar:0.5,sigma_deg=30,form={form}"));
+        let view = tilted(60.0, 0.0);
+        assert!(rough.eval(view, view)[0] > rough.eval(tilted(60.0, 180.0), view)[0]);
+    }
+    // Eq. 30 by hand: σ² = 0.25 (28.6479°), θi = θr = 60°, Δφ = 0: A = 1 − 0.125/0.58, B = 0.1125/0.34, sinα tanβ = 1.5.
+    let m = model(&format!("oren-nayar:1,sigma_deg={}", 0.5f64.to_degrees()));
+    let view = tilted(60.0, 0.0);
+    let expected = (1.0 - 0.125 / 0.58 + 0.1125 / 0.34 * 1.5) * FRAC_1_PI;
+    assert!(near(m.eval(view, view)[0], expected));
+}
+
+#[test]
+fn torrance_sparrow_at_normal_incidence_is_f0_over_4_pi_alpha_squared() {
+    for distribution in ["ggx", "beckmann", "blinn-phong"] {
+        for masking in ["smith", "smith-correlated", "v-cavity"] {
+            let m = model(&format!(
+                "torrance-sparrow:distribution={distribution},masking={masking},alpha=0.5,f0=0.3,interreflection=off"
+            ));
+            assert!(
+                near(m.eval(UP, UP)[0], 0.3 / (4.0 * PI * 0.25)),
+                "{distribution} {masking}"
+            );
+        }
+    }
+}
+
+#[test]
+fn rotation_turns_the_brushed_direction() {
+    let along = model("ggx:alpha_x=0.1,alpha_y=0.5");
+    let turned = model("ggx:alpha_x=0.1,alpha_y=0.5,rotation_deg=90");
+    let (wi, wo) = (tilted(30.0, 20.0), tilted(40.0, 100.0));
+    let f = along.eval(wi, wo)[0];
+    let g = turned.eval(tilted(30.0, 110.0), tilted(40.0, 190.0))[0];
+    assert!((f - g).abs() < 1e-10 * f);
+    assert!((turned.eval(wi, wo)[0] - f).abs() > 1e-3 * f);
+}
+
+#[test]
+fn gltf_ends_are_its_metal_and_its_dielectric() {
+    let metal = model("gltf:base_color=0.9/0.6/0.2,metallic=1,roughness=0.5");
+    let same = model("ggx:f0=0.9/0.6/0.2,roughness=0.5,masking=smith,interreflection=off");
+    let (wi, wo) = (tilted(30.0, 20.0), tilted(40.0, 190.0));
+    for (f, g) in metal.eval(wi, wo).into_iter().zip(same.eval(wi, wo)) {
+        assert!(near(f, g));
+    }
+    // At normal incidence: 0.96 c/π + 0.04/(4π α²), α = 1/4.
+    let f = model("gltf:base_color=0.5,metallic=0,roughness=0.5").eval(UP, UP)[0];
+    assert!(near(f, 0.96 * 0.5 * FRAC_1_PI + 0.04 / (4.0 * PI / 16.0)));
+}
+
+#[test]
+fn toon_is_flat_within_a_band() {
+    let m = model("toon:reflectance=0.6,bands=3,specular=0");
+    let radiance = |theta: f64| m.eval_cos(tilted(theta, 0.0), UP)[0];
+    // cos 20° and cos 30° both round to 3/3; cos 45° = 0.707 to 2/3; cos 85° to 0.
+    assert!(near(radiance(20.0), 0.6 * FRAC_1_PI) && near(radiance(30.0), 0.6 * FRAC_1_PI));
+    assert!(near(radiance(45.0), 0.4 * FRAC_1_PI));
+    assert_eq!(radiance(85.0), 0.0);
+}
+
+#[test]
+fn a_sum_is_its_parts_with_the_density_of_the_whole() {
+    let sum = model("sum(lambertian:0.4, phong:diffuse=0,specular=0.3, mirror:0.2)");
+    let parts = [
+        model("lambertian:0.4"),
+        model("phong:diffuse=0,specular=0.3"),
+    ];
+    let (wi, wo) = (tilted(30.0, 20.0), tilted(40.0, 190.0));
+    let f = parts[0].eval(wi, wo)[0] + parts[1].eval(wi, wo)[0];
+    assert!(near(sum.eval(wi, wo)[0], f));
+    // The mean weight over all draws is the albedo: 0.4 + 0.2 and the lobe's, at most 0.3.
+    let n = 64;
+    let mut albedo = 0.0;
+    for k in 0..n * n * n {
+        let u = [k % n, k / n % n, k / (n * n)].map(|i| (f64::from(i) + 0.5) / f64::from(n));
+        albedo += sum.sample(wo, u).weight[0] / f64::from(n * n * n);
+    }
+    assert!(albedo > 0.8 && albedo < 0.9, "{albedo}");
+}
