@@ -1,4 +1,5 @@
 //! Scenes whose answer is derived in their comment, for every integrator and sampler.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! T9: light adds up over lights and over the components of a BRDF.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! The same options give the same bits, and different ones don't.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod support;
 

@@ -1,4 +1,5 @@
 //! Radiometric sensors against closed forms.
+#![allow(clippy::unwrap_used, reason = "a test may fail")]
 
 mod support;
 
