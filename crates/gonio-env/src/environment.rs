@@ -12,9 +12,9 @@ use std::sync::Arc;
 pub struct EnvSample {
     /// Towards the light; world, unit.
     pub wi: Vec3<f32>,
-    /// Radiance from there [W m⁻² sr⁻¹], as [`Environment::radiance`] gives it.
+    /// Radiance from there \[W m⁻² sr⁻¹], as [`Environment::radiance`] gives it.
     pub radiance: [f32; 3],
-    /// Density of having chosen `wi` [sr⁻¹], as [`Environment::pdf`] gives it, to the bit. 0 only where it underflows
+    /// Density of having chosen `wi` \[sr⁻¹], as [`Environment::pdf`] gives it, to the bit. 0 only where it underflows
     /// (below 1e-38 of the picture's peak): such a sample carries nothing and must be skipped.
     pub pdf: f32,
 }
@@ -49,7 +49,7 @@ pub(crate) struct Picture {
 const DISC_FLOOR: f32 = 0.01;
 
 impl Environment {
-    /// The same radiance [W m⁻² sr⁻¹] from every direction.
+    /// The same radiance \[W m⁻² sr⁻¹] from every direction.
     ///
     /// # Panics
     /// If a channel is NaN, infinite or negative; [`Environment::try_uniform`] returns an error instead.
@@ -57,7 +57,7 @@ impl Environment {
         Self::try_uniform(radiance).unwrap_or_else(|e| panic!("{e}"))
     }
 
-    /// The same radiance [W m⁻² sr⁻¹] from every direction.
+    /// The same radiance \[W m⁻² sr⁻¹] from every direction.
     ///
     /// # Errors
     /// [`EnvError::Parameter`] if a channel is NaN, infinite or negative.
@@ -66,7 +66,7 @@ impl Environment {
         Ok(Self::of(Source::Uniform(radiance)))
     }
 
-    /// The environment that `image` shows, its pixels being radiance [W m⁻² sr⁻¹].
+    /// The environment that `image` shows, its pixels being radiance \[W m⁻² sr⁻¹].
     ///
     /// Any size will do for `LatLong`, down to 1 × 1; the disc layouts take square pictures. What stands outside a disc
     /// is ignored.
@@ -172,7 +172,7 @@ impl Environment {
         Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x)
     }
 
-    /// Radiance [W m⁻² sr⁻¹] from the unit direction `d` (world). Finite and ≥ 0 for every finite `d`.
+    /// Radiance \[W m⁻² sr⁻¹] from the unit direction `d` (world). Finite and ≥ 0 for every finite `d`.
     #[inline]
     pub fn radiance(&self, d: Vec3<f32>) -> [f32; 3] {
         self.times_scale(match &self.source {
@@ -181,7 +181,7 @@ impl Environment {
         })
     }
 
-    /// Density [sr⁻¹] with which [`Environment::sample`] chooses the unit direction `d` (world). It integrates to 1 over
+    /// Density \[sr⁻¹] with which [`Environment::sample`] chooses the unit direction `d` (world). It integrates to 1 over
     /// the sphere. A black environment samples the sphere uniformly.
     #[inline]
     pub fn pdf(&self, d: Vec3<f32>) -> f32 {

@@ -18,11 +18,11 @@ pub struct EnvInfo {
     pub width: usize,
     /// Rows of the picture; 0 for a uniform environment.
     pub height: usize,
-    /// Rotation about +y [degrees], counter-clockwise seen from above.
+    /// Rotation about +y \[degrees], counter-clockwise seen from above.
     pub yaw_deg: f64,
-    /// Radiance averaged over the sphere [W m⁻² sr⁻¹], RGB.
+    /// Radiance averaged over the sphere \[W m⁻² sr⁻¹], RGB.
     pub mean_radiance: [f64; 3],
-    /// Irradiance [W m⁻²], RGB, on surfaces whose normals are +x, −x, +y, −y, +z, −z.
+    /// Irradiance \[W m⁻²], RGB, on surfaces whose normals are +x, −x, +y, −y, +z, −z.
     pub irradiance: [[f64; 3]; 6],
     /// The texel of the largest luminance.
     pub peak: Peak,
@@ -44,15 +44,15 @@ pub struct EnvInfo {
 /// The brightest texel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Peak {
-    /// Its radiance [W m⁻² sr⁻¹].
+    /// Its radiance \[W m⁻² sr⁻¹].
     pub radiance: [f64; 3],
     /// Column and row; (0, 0) for a uniform environment.
     pub texel: [usize; 2],
     /// Unit vector towards it (world).
     pub direction: [f64; 3],
-    /// Angle from the zenith +y [degrees].
+    /// Angle from the zenith +y \[degrees].
     pub theta_deg: f64,
-    /// Azimuth [degrees] in [−180, 180]: 0 in front (−z), 90 to the right (+x).
+    /// Azimuth \[degrees] in [−180, 180]: 0 in front (−z), 90 to the right (+x).
     pub phi_deg: f64,
 }
 

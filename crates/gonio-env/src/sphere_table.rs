@@ -193,7 +193,7 @@ pub(crate) fn uniform_direction(u: [f32; 2]) -> Vec3<f32> {
     Vec3::new(r * sin, y, -r * cos)
 }
 
-/// The uniform density over the sphere [sr⁻¹].
+/// The uniform density over the sphere \[sr⁻¹].
 pub(crate) const UNIFORM_DENSITY: f32 = (0.25 / PI) as f32;
 
 #[cfg(test)]

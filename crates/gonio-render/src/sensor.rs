@@ -65,7 +65,7 @@ pub struct Parallelogram {
     pub side_v: Vec3<f32>,
 }
 
-/// Irradiance E = ∫ L(ω) cosθ dω at point `p` of a surface with unit normal `n` [W m⁻²] (7).
+/// Irradiance E = ∫ L(ω) cosθ dω at point `p` of a surface with unit normal `n` \[W m⁻²] (7).
 ///
 /// Estimated as the reflection of a white Lambertian receiver, whose BRDF is 1/π: E = π Lr. So every light is sampled as
 /// in a picture, indirect light included.
@@ -86,7 +86,7 @@ pub fn irradiance(
     Ok(estimate.reading("irradiance", "W m⁻²", PI))
 }
 
-/// Radiant exitance M = ∫ L(ω) cosθ dω leaving the surface at point `p` into the side of unit normal `n` [W m⁻²].
+/// Radiant exitance M = ∫ L(ω) cosθ dω leaving the surface at point `p` into the side of unit normal `n` \[W m⁻²].
 ///
 /// The surface is the one that rays toward `p` meet, started on the side of `n` at `distance` from it; choose it smaller
 /// than the gap to whatever else is near.
@@ -124,7 +124,7 @@ pub fn radiant_exitance(
     Ok(estimate.reading("radiant exitance", "W m⁻²", PI))
 }
 
-/// Radiance L that arrives at `origin` from `direction` [W m⁻² sr⁻¹].
+/// Radiance L that arrives at `origin` from `direction` \[W m⁻² sr⁻¹].
 ///
 /// # Errors
 /// Fewer than 2 samples, or a direction of length 0.

@@ -71,7 +71,10 @@ fn over_lights() {
                 )
             };
             let [a, b] = lights();
-            let parts = [shot(&[a.clone()]), shot(&[b.clone()])];
+            let parts = [
+                shot(std::slice::from_ref(&a)),
+                shot(std::slice::from_ref(&b)),
+            ];
             let whole = shot(&[a, b]);
             assert!(
                 adds_up(&whole, [&parts[0], &parts[1]], 1.0),
@@ -92,7 +95,7 @@ fn over_components() {
     let camera = camera_above(5.0, 20.0);
     let shot = |spec: &str| {
         picture(
-            &scene(spec, &[point.clone()]),
+            &scene(spec, std::slice::from_ref(&point)),
             &camera,
             &options(INTEGRATORS[0], SAMPLERS[1], 16, 1),
         )

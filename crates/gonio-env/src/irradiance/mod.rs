@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 /// An irradiance with an estimate of its numerical error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Irradiance {
-    /// Irradiance [W m⁻²] of each channel.
+    /// Irradiance \[W m⁻²] of each channel.
     pub value: [f64; 3],
     /// Estimated numerical error of each channel, in the same unit: the change from integrating twice as coarsely, and
     /// rounding.
@@ -24,7 +24,7 @@ pub struct Irradiance {
 }
 
 impl Environment {
-    /// Irradiance [W m⁻²] on a surface with normal `n` (world, of any length), E = ∫ L cosθ dω over its hemisphere (T6).
+    /// Irradiance \[W m⁻²] on a surface with normal `n` (world, of any length), E = ∫ L cosθ dω over its hemisphere (T6).
     ///
     /// Exactly π times the radiance if that is uniform. See [`Environment::irradiance_with_error`] for the error. NaN if `n`
     /// is zero or not finite: such a normal has no hemisphere.
@@ -95,7 +95,7 @@ impl Environment {
         found
     }
 
-    /// Radiance [W m⁻² sr⁻¹] averaged over the sphere, each direction weighing the same.
+    /// Radiance \[W m⁻² sr⁻¹] averaged over the sphere, each direction weighing the same.
     pub fn mean_radiance(&self) -> [f64; 3] {
         let mean = match &self.source {
             Source::Uniform(radiance) => radiance.map(f64::from),

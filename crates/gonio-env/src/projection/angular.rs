@@ -44,7 +44,7 @@ pub fn uv<R: Real>(d: Vec3<R>) -> [R; 2] {
     uv_from_disc([x, y])
 }
 
-/// dω / (du dv) = 4π² sin(πr) / (πr) [sr]: 4π² at the centre, 0 at the rim and outside.
+/// dω / (du dv) = 4π² sin(πr) / (πr) \[sr]: 4π² at the centre, 0 at the rim and outside.
 #[inline(always)]
 pub fn jacobian<R: Real>(uv: [R; 2]) -> R {
     let [x, y] = disc_from_uv(uv);

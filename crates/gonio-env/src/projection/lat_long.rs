@@ -35,7 +35,7 @@ pub fn uv<R: Real>(d: Vec3<R>) -> [R; 2] {
     ]
 }
 
-/// dω / (du dv) = 2π² sin(πv) [sr].
+/// dω / (du dv) = 2π² sin(πv) \[sr].
 #[inline(always)]
 pub fn jacobian<R: Real>(uv: [R; 2]) -> R {
     let two_pi2 = R::lit(2.0 * std::f64::consts::PI * std::f64::consts::PI);

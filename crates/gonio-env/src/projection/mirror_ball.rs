@@ -43,7 +43,7 @@ pub fn uv<R: Real>(d: Vec3<R>) -> [R; 2] {
     uv_from_disc([x, y])
 }
 
-/// dω / (du dv) = 16 [sr] on the disc, 0 outside.
+/// dω / (du dv) = 16 \[sr] on the disc, 0 outside.
 #[inline(always)]
 pub fn jacobian<R: Real>(uv: [R; 2]) -> R {
     let [x, y] = disc_from_uv(uv);

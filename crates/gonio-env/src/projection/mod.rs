@@ -77,7 +77,7 @@ impl Layout {
         }
     }
 
-    /// Solid angle a unit of picture area, dω / (du dv) [sr] (T4); 0 outside the layout's domain.
+    /// Solid angle a unit of picture area, dω / (du dv) \[sr] (T4); 0 outside the layout's domain.
     ///
     /// Its integral over the picture is 4π.
     #[inline(always)]

@@ -37,7 +37,7 @@ impl Integrator {
         }
     }
 
-    /// Estimates the radiance that arrives along `ray` at its origin [W m⁻² sr⁻¹], with what the ray met first.
+    /// Estimates the radiance that arrives along `ray` at its origin \[W m⁻² sr⁻¹], with what the ray met first.
     pub fn radiance(
         &self,
         scene: &Scene,
@@ -68,7 +68,7 @@ impl Integrator {
     }
 
     /// Estimates the radiance that `vertex` reflects toward its viewer, Lr(ωr) of the reflection equation (12, 13)
-    /// [W m⁻² sr⁻¹].
+    /// \[W m⁻² sr⁻¹].
     pub fn reflected(
         &self,
         scene: &Scene,
