@@ -1,6 +1,6 @@
 //! [`Table1`] and [`Table2`], the tables that formulas look values up in.
 
-/// A one-dimensional table, linearly interpolated by [`Real::table1`].
+/// A one-dimensional table, linearly interpolated by [`Real::table1`](crate::Real::table1).
 #[derive(Debug, Clone, Copy)]
 pub struct Table1 {
     /// Name in exported shader code: a valid identifier, unique in the program.
@@ -9,7 +9,7 @@ pub struct Table1 {
     pub data: &'static [f32],
 }
 
-/// A two-dimensional table, bilinearly interpolated by [`Real::table2`].
+/// A two-dimensional table, bilinearly interpolated by [`Real::table2`](crate::Real::table2).
 #[derive(Debug, Clone, Copy)]
 pub struct Table2 {
     /// Name in exported shader code: a valid identifier, unique in the program.

@@ -148,7 +148,7 @@ pub fn radiance(
     Ok(estimate.reading("radiance", "W m⁻² sr⁻¹", 1.0))
 }
 
-/// Radiant flux Φ = ∫∫ L cosθ dω dA that `detector` receives on the side it looks to [W].
+/// Radiant flux Φ = ∫∫ L cosθ dω dA that `detector` receives on the side it looks to \[W].
 ///
 /// # Errors
 /// Fewer than 2 samples, or a detector without area.
