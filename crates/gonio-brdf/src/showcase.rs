@@ -26,6 +26,11 @@ pub fn showcase() -> Vec<ModelSpec> {
             }
         };
         add(base.clone());
+        if info.name == "phong" {
+            // As published it may reflect more than it receives: the check prints how much.
+            let published = "phong:diffuse=0,specular=1,exponent=2,normalisation=published";
+            ModelSpec::parse(published).into_iter().for_each(&mut add);
+        }
         for parameter in info.parameters {
             let Kind::Choice { options, .. } = parameter.kind else {
                 continue;
