@@ -217,9 +217,8 @@ fn integral_verdict(c: &Checker, looks: &[&Look], samples: u64) -> Verdict {
                 .unwrap_or(std::cmp::Ordering::Equal)
         })
         .expect("invariant: there is at least one direction");
-    let figure = (worst.integral - worst.drawn).abs();
     let bound = c.settings.integral_bound;
-    let mut v = Verdict::passing(Property::PdfIntegral, figure, bound, samples);
+    let mut v = Verdict::passing(Property::PdfIntegral, worst.excess(), bound, samples);
     let rate = c.settings.false_positive_rate;
     v.false_positive_rate = rate;
     let (low, high) = worst.drawn_range;
@@ -240,8 +239,8 @@ fn integral_verdict(c: &Checker, looks: &[&Look], samples: u64) -> Verdict {
             ),
     );
     v.detail = format!(
-        "∫ pdf = {:.6} ± {:.1e}, and {:.6} of the draws have a density",
-        i, e, worst.drawn
+        "∫ pdf = {i:.6} ± {e:.1e}, and {:.6} of {} draws have a density: apart by this much beyond chance",
+        worst.drawn, worst.draws
     );
     v.judge(worst.excess() > bound, true)
 }
