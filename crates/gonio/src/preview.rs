@@ -25,19 +25,21 @@ const PANORAMA: &[u8] = include_bytes!("../../../assets/preview/sunset.hdr");
 /// # Errors
 /// None in a sound build: the files are part of the program.
 pub fn scene() -> Result<Scene, SceneError> {
+    load(LoadOptions::default())
+}
+
+/// The preview scene, read as `options` say, but for the place of its files.
+///
+/// # Errors
+/// If the options ask for what the scene doesn't have, such as another camera.
+pub fn load(options: LoadOptions) -> Result<Scene, SceneError> {
     let files = Files::embedded([
         ("preview.toml", SCENE),
         ("ball.glb", BALL),
         ("stand.glb", STAND),
         ("sunset.hdr", PANORAMA),
     ]);
-    Scene::load(
-        "preview.toml",
-        &LoadOptions {
-            files,
-            ..LoadOptions::default()
-        },
-    )
+    Scene::load("preview.toml", &LoadOptions { files, ..options })
 }
 
 /// The embedded panorama, dawn on the Piazzetta in Venice: the light of scenes that have none.

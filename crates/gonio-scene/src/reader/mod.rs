@@ -63,6 +63,7 @@ fn choose_camera(cameras: &mut [Camera], choice: &str) -> Result<(), SceneError>
             ) {
                 (_, 0) => "the scene has no camera".into(),
                 (Some(near), _) => format!("did you mean `{near}`?"),
+                (None, 1) if names[0].is_empty() => "the scene has one camera: 0".into(),
                 (None, 1) => format!("the scene has one camera: 0 ({})", names[0]),
                 (None, n) => format!("the scene has cameras 0 to {}: {}", n - 1, names.join(", ")),
             };

@@ -1,14 +1,15 @@
 //! `gonio brdf`.
 
-use super::failure::{Failure, chain};
+use super::failure::Failure;
 use super::parse::{self, Angles};
-use super::{print, print_json};
+use super::terminal::{print, print_json, significant};
 use gonio_brdf::{Brdf, Model, ModelInfo, ModelSpec, registry};
 use gonio_verify::{Effort, Report};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 #[derive(clap::Subcommand)]
+#[command(after_help = "Example:\n  gonio brdf show torrance-sparrow")]
 pub(super) enum Command {
     /// Name every reflection function
     #[command(after_help = "Example:\n  gonio brdf list")]
@@ -62,11 +63,11 @@ pub(super) enum Command {
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 pub(super) enum EffortName {
-    /// A second or less
+    /// About a tenth of a second a model
     Quick,
-    /// Seconds
+    /// About a second a model
     Standard,
-    /// A minute
+    /// About ten seconds a model
     Thorough,
 }
 
@@ -108,23 +109,27 @@ fn list(json: bool) -> Result<(), Failure> {
                 .iter()
                 .map(|(k, v)| format!("{k}={v}"))
                 .collect();
-            text += &format!("{:width$}  also {}: {}\n", "", alias.name, preset.join(","));
+            let meaning = match preset.is_empty() {
+                true => String::new(),
+                false => format!(": {}", preset.join(",")),
+            };
+            text += &format!("{:width$}  also {}{meaning}\n", "", alias.name);
         }
     }
-    print(&text);
-    Ok(())
+    print(&text)
 }
 
 fn show(name: &str, json: bool) -> Result<(), Failure> {
-    let spec = parse_spec(name)?;
-    let model = spec.info().map_err(of_spec)?;
+    let spec = ModelSpec::parse(name)?;
+    let model = spec.info()?;
     if json {
         return print_json(&in_json(model));
     }
-    let declared = spec.declares().map_err(of_spec)?;
+    let declared = spec.declares()?;
     let mut text = format!(
-        "{}: {}\n\nSource: {}\n",
-        model.name, model.summary, model.paper
+        "{}\n\n{}\n",
+        wrapped(&format!("{}: {}", model.name, model.summary), 2),
+        wrapped(&format!("Source: {}", model.paper), 2)
     );
     if !model.parameters.is_empty() {
         text += "\nParameters\n";
@@ -136,16 +141,19 @@ fn show(name: &str, json: bool) -> Result<(), Failure> {
         .max()
         .unwrap_or(0);
     for parameter in model.parameters {
-        let value = spec
-            .value(parameter.name)
-            .map_or("none".into(), |v| v.to_string());
-        text += &format!(
-            "  {:width$}  {}\n  {:width$}  {}; here {value}\n",
-            parameter.name,
-            parameter.meaning,
-            "",
-            parameter.expected()
-        );
+        let given = spec.values.contains_key(parameter.name);
+        let value = match spec.value(parameter.name) {
+            Some(value) if given => format!("here {value}"),
+            Some(value) => format!("default {value}"),
+            None => "no default".into(),
+        };
+        for (first, line) in [
+            (parameter.name, parameter.meaning),
+            ("", &format!("{}; {value}", parameter.expected())),
+        ] {
+            let line = format!("  {first:width$}  {line}");
+            text += &format!("{}\n", wrapped(&line, width + 4));
+        }
     }
     text += "\nDeclared\n";
     for (holds, property) in [
@@ -156,8 +164,36 @@ fn show(name: &str, json: bool) -> Result<(), Failure> {
         text += &format!("  {}{property}\n", if holds { "" } else { "not " });
     }
     text += &format!("\nCheck it: gonio brdf check {spec}\n");
-    print(&text);
-    Ok(())
+    print(&text)
+}
+
+/// Columns that text for people takes at most.
+const COLUMNS: usize = 80;
+
+/// `text` in lines of at most 80 columns, broken at spaces; the second and later ones are indented.
+fn wrapped(text: &str, indent: usize) -> String {
+    let mut lines = String::new();
+    let mut column = 0;
+    for word in text.split(' ') {
+        let length = word.chars().count();
+        if column > indent && column + 1 + length > COLUMNS {
+            lines.truncate(lines.trim_end().len());
+            lines += "\n";
+            lines += &" ".repeat(indent);
+            column = indent;
+        } else if !lines.is_empty() {
+            lines.push(' ');
+            column += 1;
+        } else if length == 0 {
+            // Text that begins with spaces keeps them.
+            lines.push(' ');
+            column = 1;
+            continue;
+        }
+        lines += word;
+        column += length;
+    }
+    lines
 }
 
 fn in_json(model: &ModelInfo) -> serde_json::Value {
@@ -184,8 +220,8 @@ fn in_json(model: &ModelInfo) -> serde_json::Value {
 }
 
 fn eval(text: &str, wi: Angles, wo: Angles, json: bool) -> Result<(), Failure> {
-    let spec = parse_spec(text)?;
-    let model: Model<f64, 3> = spec.build().map_err(of_spec)?;
+    let spec = ModelSpec::parse(text)?;
+    let model: Model<f64, 3> = spec.build()?;
     let (i, o) = (wi.direction(), wo.direction());
     let f = model.eval(i, o);
     let f_cos = model.eval_cos(i, o);
@@ -202,44 +238,46 @@ fn eval(text: &str, wi: Angles, wo: Angles, json: bool) -> Result<(), Failure> {
     }
     let colour = |c: [f64; 3]| {
         if c[0] == c[1] && c[1] == c[2] {
-            format!("{:.9}", c[0])
+            significant(c[0])
         } else {
-            format!("{:.9}  {:.9}  {:.9}  (red, green, blue)", c[0], c[1], c[2])
+            let [r, g, b] = c.map(significant);
+            format!("{r}  {g}  {b}  (red, green, blue)")
         }
     };
-    print(&format!(
+    let mut words = format!(
         "{spec}\n  wi  θ = {}°, φ = {}°\n  wo  θ = {}°, φ = {}°\n  f            {} sr⁻¹\n  f · cosθi    {} sr⁻¹\n  \
-         pdf(wi | wo) {pdf:.9} sr⁻¹",
+         pdf(wi | wo) {} sr⁻¹\n",
         wi.theta_deg,
         wi.phi_deg,
         wo.theta_deg,
         wo.phi_deg,
         colour(f),
         colour(f_cos),
-    ));
+        significant(pdf),
+    );
     if model.is_delta() {
-        print("  all its light is in a Dirac delta, whose value at a pair of directions is 0");
+        words += "  all its light is in a Dirac delta, whose value at a pair of directions is 0\n";
     }
-    Ok(())
+    print(&words)
 }
 
 fn check(text: &str, effort: Effort, json: bool) -> Result<(), Failure> {
     let specs = if text == "all" {
         gonio_brdf::showcase()
     } else {
-        vec![parse_spec(text)?]
+        vec![ModelSpec::parse(text)?]
     };
     let bar = ProgressBar::new(specs.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:32.cyan/dim} {pos}/{len} {msg}") {
+    if let Ok(style) = ProgressStyle::with_template("{bar:18.cyan/dim} {pos}/{len} {wide_msg}") {
         bar.set_style(style.progress_chars("━━─"));
     }
     let mut reports: Vec<Report> = Vec::new();
     for spec in &specs {
         bar.set_message(spec.to_string());
         bar.tick();
-        let report = gonio_brdf::check(spec, effort).map_err(of_spec)?;
+        let report = gonio_brdf::check(spec, effort)?;
         if !json {
-            bar.suspend(|| print(&format!("{report}\n")));
+            bar.suspend(|| print(&format!("{report}\n\n")))?;
         }
         reports.push(report);
         bar.inc(1);
@@ -255,22 +293,33 @@ fn check(text: &str, effort: Effort, json: bool) -> Result<(), Failure> {
         .collect();
     if failed.is_empty() {
         if !json && reports.len() > 1 {
-            print(&format!("{} reflection functions passed", reports.len()));
+            print(&format!("{} reflection functions passed", reports.len()))?;
         }
         Ok(())
     } else {
-        Err(Failure::verification(format!(
-            "not as declared: {}",
-            failed.join(", ")
-        )))
+        Err(
+            Failure::verification(format!("not as declared: {}", failed.join(", "))).with_help(
+                "each property that failed is shown above with the directions it is worst for",
+            ),
+        )
     }
 }
 
-fn parse_spec(text: &str) -> Result<ModelSpec, Failure> {
-    ModelSpec::parse(text).map_err(of_spec)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn of_spec(error: gonio_brdf::BrdfError) -> Failure {
-    Failure::usage(chain(&error))
-        .with_help("'gonio brdf list' names the models, 'gonio brdf show NAME' their parameters")
+    #[test]
+    fn long_lines_are_broken_at_spaces() {
+        let text = wrapped(&"four ".repeat(40), 3);
+        assert!(text.lines().count() > 2);
+        for (i, line) in text.lines().enumerate() {
+            assert!(line.chars().count() <= COLUMNS, "{line}");
+            assert_eq!(line.starts_with("   four"), i > 0);
+        }
+        assert_eq!(wrapped("  name   meaning", 8), "  name   meaning");
+        assert_eq!(wrapped("", 2), "");
+        let long = "x".repeat(100);
+        assert_eq!(wrapped(&long, 2), long);
+    }
 }

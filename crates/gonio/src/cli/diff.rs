@@ -1,7 +1,8 @@
 //! `gonio diff`.
 
+use super::destination;
 use super::failure::{Failure, chain};
-use super::{print, print_json, render};
+use super::terminal::{print, print_json, significant};
 use gonio_image::Image;
 use gonio_image::difference::{self, Difference, flip::FlipKind};
 use std::path::PathBuf;
@@ -23,10 +24,9 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.heatmap {
-        render::check_output(path)?;
+        destination::check(path)?;
     }
-    let read = |path: &PathBuf| Image::read(path).map_err(|e| Failure::input(chain(&e)));
-    let (a, b) = (read(&arguments.a)?, read(&arguments.b)?);
+    let (a, b) = (Image::read(&arguments.a)?, Image::read(&arguments.b)?);
     let found = difference::compare(&a, &b).map_err(|e| {
         Failure::input(format!(
             "{} and {}: {}",
@@ -34,17 +34,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             arguments.b.display(),
             chain(&e)
         ))
+        .with_help("compare pictures of the same size, such as two renderings of one scene")
     })?;
     if let Some(path) = &arguments.heatmap {
-        difference::heatmap(&found)
-            .write(path)
-            .map_err(|e| Failure::input(chain(&e)))?;
+        difference::heatmap(&found).write(path)?;
     }
     if arguments.json {
         print_json(&found)
     } else {
-        print(&in_words(&found));
-        Ok(())
+        print(&in_words(&found))
     }
 }
 
@@ -72,8 +70,15 @@ fn in_words(found: &Difference) -> String {
         ),
     };
     format!(
-        "RMSE                {:.6}\nrelative MSE        {:.6e}\nPSNR                {:.2} dB, peak {}\n\
+        "RMSE                {}\nrelative MSE        {}\nPSNR                {}, peak {}\n\
          FLIP                {:.6}, {flip}\nlargest difference  {at}",
-        found.rmse, found.relative_mse, found.psnr_db, found.peak, found.flip_mean
+        significant(found.rmse),
+        significant(found.relative_mse),
+        match found.psnr_db {
+            db if db.is_finite() => format!("{db:.2} dB"),
+            _ => "infinite".into(),
+        },
+        significant(found.peak),
+        found.flip_mean
     )
 }

@@ -1,10 +1,11 @@
 //! `gonio env`.
 
+use super::environment::PanoramaArguments;
 use super::failure::Failure;
-use super::render::PanoramaArguments;
-use super::{print, print_json};
+use super::terminal::{print, print_json};
 
 #[derive(clap::Subcommand)]
+#[command(after_help = "Example:\n  gonio env info sunset.hdr")]
 pub(super) enum Command {
     /// Layout, size, mean radiance, irradiance on six axes, peak, dynamic range, faults
     #[command(after_help = "Example:\n  gonio env info sunset.hdr")]
@@ -29,7 +30,6 @@ pub(super) fn run(command: Command) -> Result<(), Failure> {
     if json {
         print_json(&info)
     } else {
-        print(&info.to_string());
-        Ok(())
+        print(&info.to_string())
     }
 }

@@ -1,6 +1,13 @@
 //! How the command fails: one `error:` line, one `help:` line, and an exit code.
 
-use clap::error::{ContextKind, ContextValue, ErrorKind};
+use super::terminal::say;
+use gonio_brdf::BrdfError;
+use gonio_env::EnvError;
+use gonio_image::ImageError;
+use gonio_render::RenderError;
+use gonio_scene::SceneError;
+use std::io::ErrorKind;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Why the command ends without success.
@@ -12,60 +19,167 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
-    /// A verification failed; the report is already printed.
-    pub fn verification(message: impl Into<String>) -> Self {
+    fn new(code: u8, message: impl Into<String>) -> Self {
         Self {
-            code: 1,
+            code,
             message: message.into(),
             help: None,
         }
+    }
+    /// A verification failed; the report is already printed.
+    pub fn verification(message: impl Into<String>) -> Self {
+        Self::new(1, message)
     }
     /// The arguments make no sense.
     pub fn usage(message: impl Into<String>) -> Self {
-        Self {
-            code: 2,
-            message: message.into(),
-            help: None,
-        }
+        Self::new(2, message)
     }
     /// A file or another input can't be used.
     pub fn input(message: impl Into<String>) -> Self {
-        Self {
-            code: 3,
-            message: message.into(),
-            help: None,
-        }
+        Self::new(3, message)
     }
     /// The user stopped it.
     pub fn interrupted(message: impl Into<String>) -> Self {
-        Self {
-            code: 4,
-            message: message.into(),
-            help: None,
-        }
+        Self::new(4, message)
+    }
+    /// The operating system refused to `action` the file `name`.
+    pub fn io(name: &str, action: &str, error: &std::io::Error) -> Self {
+        Self::input(format!("{name}: cannot {action}: {}", plain(error)))
+            .with_help(help_on_file(Path::new(name), error.kind()))
     }
     /// Says how to go on.
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
+    /// Says first what the failure is about.
+    pub fn about(mut self, what: &str) -> Self {
+        self.message = format!("{what}: {}", self.message);
+        self
+    }
+    /// The exit code: 1 a verification failed, 2 usage, 3 input, 4 interrupted.
+    pub fn code(&self) -> u8 {
+        self.code
+    }
 
     /// Prints it to standard error.
     pub fn report(&self) -> ExitCode {
-        eprintln!("error: {}", self.message);
+        say("error", &self.message);
         if let Some(help) = &self.help {
-            eprintln!("help: {help}");
+            say("help", help);
         }
-        ExitCode::from(self.code)
+        ExitCode::from(self.code())
     }
 }
 
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        let message = chain(&error);
+        let help = error.help();
+        match error {
+            SceneError::Environment(e) => e.into(),
+            SceneError::Brdf(e) => e.into(),
+            SceneError::Image { what, source } => Self::from(source).about(&what),
+            SceneError::UnknownMaterial { .. } | SceneError::UnknownCamera { .. } => {
+                let mut failure = Self::usage(message);
+                failure.help = help;
+                failure
+            }
+            SceneError::Io { path, source } => {
+                Self::input(message).with_help(help_on_file(&path, source.kind()))
+            }
+            SceneError::Description { .. } => {
+                Self::input(message).with_help(help.unwrap_or("correct this line".into()))
+            }
+            SceneError::Limit { .. } => Self::input(message)
+                .with_help("the file is damaged, or has to be divided into smaller ones"),
+            SceneError::Format { .. } | SceneError::Mesh { .. } => {
+                Self::input(message).with_help(help.unwrap_or(DAMAGED.into()))
+            }
+            _ => Self::input(message).with_help(help.unwrap_or("correct the scene".into())),
+        }
+    }
+}
+
+impl From<EnvError> for Failure {
+    fn from(error: EnvError) -> Self {
+        let message = chain(&error);
+        let help = error.help();
+        match error {
+            EnvError::Image(e) => e.into(),
+            EnvError::UnknownLayout { .. } | EnvError::Parameter { .. } => Self::usage(message)
+                .with_help(
+                    help.unwrap_or(
+                        "an environment is a picture, uniform:1 or uniform:r/g/b".into(),
+                    ),
+                ),
+            EnvError::NotFound { file, suggestion } => match (suggestion, nearest_file(&file)) {
+                (None, Some(near)) => Self::input(message).with_help(did_you_mean(&near)),
+                _ => Self {
+                    help,
+                    ..Self::input(message)
+                },
+            },
+            _ => Self::input(message)
+                .with_help(help.unwrap_or("'gonio env info --help' says what is read".into())),
+        }
+    }
+}
+
+impl From<BrdfError> for Failure {
+    fn from(error: BrdfError) -> Self {
+        let message = chain(&error);
+        let help = error.help();
+        match error {
+            BrdfError::Io { path, source } => {
+                Self::input(message).with_help(help_on_file(&path, source.kind()))
+            }
+            BrdfError::Format { .. } => Self::input(message).with_help(DAMAGED),
+            BrdfError::Parameter { model, .. } => Self::usage(message)
+                .with_help(help.unwrap_or(format!("see 'gonio brdf show {model}'"))),
+            _ => Self::usage(message)
+                .with_help(help.unwrap_or("'gonio brdf list' names the models".into())),
+        }
+    }
+}
+
+impl From<ImageError> for Failure {
+    fn from(error: ImageError) -> Self {
+        let message = chain(&error);
+        match error {
+            ImageError::Io {
+                file,
+                action,
+                source,
+            } => Self::io(&file, action, &source),
+            ImageError::Format { .. } => Self::input(message).with_help(DAMAGED),
+            ImageError::Limit { .. } => {
+                Self::input(message).with_help("the file is damaged, or has to be made smaller")
+            }
+            ImageError::Unsupported { .. } => Self::input(message).with_help("convert the picture"),
+            _ => Self::input(message),
+        }
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        let help = match error {
+            RenderError::Limit { .. } => "choose a smaller --size",
+            _ => "--help explains each option",
+        };
+        Self::usage(chain(&error)).with_help(help)
+    }
+}
+
+const DAMAGED: &str = "the file is damaged, or not what its name says: export or download it again";
+
 /// The message of an error with those that caused it, which its own text may leave out.
 pub(crate) fn chain(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
+    let mut text = plain(error);
     let mut source = error.source();
     while let Some(cause) = source {
-        let cause_text = cause.to_string();
+        let cause_text = plain(cause);
         if !text.contains(&cause_text) {
             text = format!("{text}: {cause_text}");
         }
@@ -74,65 +188,96 @@ pub(crate) fn chain(error: &dyn std::error::Error) -> String {
     text
 }
 
-/// An error that clap found, in our form.
-pub(crate) fn of_arguments(error: &clap::Error) -> Failure {
-    let rendered = error.render().to_string();
-    let mut lines = rendered.lines().map(str::trim);
-    let mut message = lines
-        .next()
-        .unwrap_or_default()
-        .trim_start_matches("error: ")
-        .to_owned();
-    if error.kind() == ErrorKind::MissingRequiredArgument {
-        let missing: Vec<&str> = lines.take_while(|line| !line.is_empty()).collect();
-        message = format!("missing {}", missing.join(", "));
+/// An error's text without the operating system's number of it.
+fn plain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    while let Some(start) = text.find(" (os error ") {
+        let Some(length) = text[start..].find(')') else {
+            break;
+        };
+        text.replace_range(start..=start + length, "");
     }
-    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        message = "a subcommand is missing".into();
-    }
-    let suggestion = [
-        ContextKind::SuggestedSubcommand,
-        ContextKind::SuggestedArg,
-        ContextKind::SuggestedValue,
-    ]
-    .into_iter()
-    .find_map(|kind| match error.get(kind) {
-        Some(ContextValue::String(s)) => Some(s.clone()),
-        Some(ContextValue::Strings(s)) => s.first().cloned(),
-        _ => None,
-    });
-    let help = match suggestion {
-        Some(word) => format!("did you mean '{word}'?"),
-        None => {
-            let words: Vec<String> = std::env::args()
-                .skip(1)
-                .take_while(|word| !word.starts_with('-'))
-                .take(2)
-                .filter(|word| COMMANDS.contains(&word.as_str()))
-                .collect();
-            format!(
-                "see '{} --help'",
-                [vec!["gonio".to_owned()], words].concat().join(" ")
-            )
-        }
-    };
-    Failure::usage(message).with_help(help)
+    text
 }
 
-/// The words that `--help` may follow.
-const COMMANDS: [&str; 14] = [
-    "render",
-    "brdf",
-    "env",
-    "measure",
-    "diff",
-    "list",
-    "show",
-    "eval",
-    "check",
-    "info",
-    "irradiance",
-    "exitance",
-    "radiance",
-    "flux",
-];
+/// What to do about a file that can't be opened, read or written.
+fn help_on_file(path: &Path, kind: ErrorKind) -> String {
+    match kind {
+        ErrorKind::NotFound => match nearest_file(path) {
+            Some(near) => did_you_mean(&near),
+            None => "check the path: there is no file of this name".into(),
+        },
+        ErrorKind::PermissionDenied => "check the permissions".into(),
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            "free some space, or write to another disk".into()
+        }
+        ErrorKind::IsADirectory => "name a file in this folder".into(),
+        _ => "check the path and the permissions".into(),
+    }
+}
+
+/// The question after a slip of the pen.
+pub(crate) fn did_you_mean(word: &str) -> String {
+    format!("did you mean '{word}'?")
+}
+
+/// The candidate that `word` was probably meant to be: at most a quarter of it, and at most three letters, differ.
+pub(crate) fn nearest<S: AsRef<str>>(
+    word: &str,
+    candidates: impl IntoIterator<Item = S>,
+) -> Option<String> {
+    let most = (word.chars().count() / 4).clamp(1, 3);
+    candidates
+        .into_iter()
+        .map(|c| (strsim::damerau_levenshtein(word, c.as_ref()), c))
+        .filter(|(distance, _)| *distance <= most)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, c)| c.as_ref().to_owned())
+}
+
+/// Names of a folder that are compared at most.
+const MOST_FILES: usize = 10_000;
+
+/// The file beside where `path` should be whose name is most like it.
+fn nearest_file(path: &Path) -> Option<String> {
+    let folder = path.parent()?;
+    let here = folder.as_os_str().is_empty();
+    let files = std::fs::read_dir(if here { Path::new(".") } else { folder }).ok()?;
+    let names = files
+        .take(MOST_FILES)
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let near = nearest(path.file_name()?.to_str()?, names)?;
+    Some(folder.join(near).display().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exit_codes() {
+        let codes = [
+            Failure::verification("").code(),
+            Failure::usage("").code(),
+            Failure::input("").code(),
+            Failure::interrupted("").code(),
+        ];
+        assert_eq!(codes, [1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn messages_have_no_numbers_of_the_operating_system() {
+        let error = std::io::Error::from_raw_os_error(2);
+        assert!(error.to_string().contains("os error"));
+        assert!(!chain(&error).contains("os error"));
+    }
+
+    #[test]
+    fn slips_of_the_pen() {
+        let names = ["scene.toml", "sunset.hdr"];
+        assert_eq!(nearest("scen.toml", names), Some("scene.toml".into()));
+        assert_eq!(nearest("scene.tmol", names), Some("scene.toml".into()));
+        assert_eq!(nearest("room.toml", names), None);
+        assert_eq!(nearest("", names), None);
+    }
+}

@@ -1,16 +1,19 @@
 //! `gonio measure`.
 
-use super::failure::{Failure, chain};
-use super::render::EnvironmentArguments;
-use super::{parse, print, print_json};
+use super::environment::EnvironmentArguments;
+use super::failure::Failure;
+use super::parse;
+use super::terminal::{print, print_json, significant, warn};
+use gonio_env::Environment;
 use gonio_num::Vec3;
+use gonio_render::Integrator;
 use gonio_render::integrator::{Direct, Path as PathTracer};
 use gonio_render::sensor::{self, Parallelogram, Reading, SensorOptions};
-use gonio_render::{Integrator, RenderError};
-use gonio_scene::{LoadOptions, Scene, SceneBuilder};
+use gonio_scene::{LoadOptions, Ray, Scene, SceneBuilder};
 use std::path::PathBuf;
 
 #[derive(clap::Subcommand)]
+#[command(after_help = "Example:\n  gonio measure irradiance --env uniform:1")]
 pub(super) enum Command {
     /// Irradiance E = ∫ L cosθ dω at a point with a normal, or of a bare environment
     #[command(after_help = "Examples:\n  \
@@ -18,22 +21,20 @@ pub(super) enum Command {
         gonio measure irradiance --env sunset.hdr --normal 0,1,0\n  \
         gonio measure irradiance room.toml --point 0,0.8,0 --normal 0,1,0")]
     Irradiance {
-        #[command(flatten)]
-        source: Source,
         /// Where
         #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", value_parser = parse::vector, allow_hyphen_values = true)]
         point: Vec3<f32>,
         /// The side that receives light
         #[arg(long, value_name = "X,Y,Z", default_value = "0,1,0", value_parser = parse::vector, allow_hyphen_values = true)]
         normal: Vec3<f32>,
+        #[command(flatten)]
+        source: Source,
     },
     /// Radiant exitance M = ∫ L cosθ dω leaving a surface at a point
     #[command(
         after_help = "Example:\n  gonio measure exitance room.toml --point 0,0,0 --normal 0,1,0"
     )]
     Exitance {
-        #[command(flatten)]
-        source: Source,
         /// A point on the surface
         #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
         point: Vec3<f32>,
@@ -41,33 +42,33 @@ pub(super) enum Command {
         #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
         normal: Vec3<f32>,
         /// How far from the point rays start: less than the gap to other surfaces
-        #[arg(long, value_name = "LENGTH", default_value = "0.001", value_parser = parse::finite)]
+        #[arg(long, value_name = "LENGTH", default_value = "0.001", value_parser = parse::finite, allow_hyphen_values = true)]
         distance: f32,
+        #[command(flatten)]
+        source: Source,
     },
     /// Radiance L along a ray: what arrives at its origin from its direction
     #[command(
         after_help = "Example:\n  gonio measure radiance room.toml --origin 0,1,4 --direction 0,0,-1"
     )]
     Radiance {
-        #[command(flatten)]
-        source: Source,
         /// Where the light arrives
         #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", value_parser = parse::vector, allow_hyphen_values = true)]
         origin: Vec3<f32>,
         /// Where it comes from, seen from the origin
         #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
         direction: Vec3<f32>,
+        #[command(flatten)]
+        source: Source,
     },
     /// Radiant flux Φ = ∫∫ L cosθ dω dA through a rectangle, or of a light
     #[command(after_help = "Examples:\n  \
         gonio measure flux room.toml --corner -1,0,-1 --side-u 0,0,2 --side-v 2,0,0\n  \
         gonio measure flux room.toml --light 0")]
     Flux {
-        #[command(flatten)]
-        source: Source,
         /// A corner of the rectangle
         #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true,
-              required_unless_present = "light", requires = "side_u", requires = "side_v")]
+              requires = "side_u", requires = "side_v")]
         corner: Option<Vec3<f32>>,
         /// One side of it
         #[arg(long, value_name = "X,Y,Z", value_parser = parse::vector, allow_hyphen_values = true)]
@@ -78,6 +79,8 @@ pub(super) enum Command {
         /// The flux that a light of the scene emits, by its number from 0
         #[arg(long, value_name = "NUMBER", conflicts_with = "corner")]
         light: Option<usize>,
+        #[command(flatten)]
+        source: Source,
     },
 }
 
@@ -89,10 +92,10 @@ pub(super) struct Source {
     #[command(flatten)]
     environment: EnvironmentArguments,
     /// Samples
-    #[arg(long, value_name = "N", default_value_t = 65536)]
+    #[arg(long, value_name = "N", default_value_t = 65536, value_parser = parse::whole(2, u64::from(u32::MAX)), allow_hyphen_values = true)]
     samples: u64,
     /// Seed of the samples
-    #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = parse::whole(0, u64::MAX), allow_hyphen_values = true)]
     seed: u64,
     /// Light from lights alone, without reflections between surfaces
     #[arg(long)]
@@ -116,38 +119,36 @@ impl Source {
     }
 
     fn scene(&self) -> Result<Scene, Failure> {
-        let environment = self.environment.load()?;
-        let mut scene = match &self.scene {
+        let scene = match &self.scene {
             Some(path) => {
-                Scene::load(path, &LoadOptions::default()).map_err(|e| Failure::input(chain(&e)))?
-            }
-            None if let Some(environment) = environment => {
-                let mut scene = SceneBuilder::new("environment");
-                scene.environment(environment);
-                return scene.build().map_err(|e| Failure::input(chain(&e)));
+                let mut scene = Scene::load(path, &LoadOptions::default())?;
+                self.environment.apply(&mut scene)?;
+                scene
             }
             None => {
-                return Err(
-                    Failure::usage("nothing to measure: no scene and no environment")
-                        .with_help("name a scene file, or give --env FILE or --env uniform:1"),
-                );
+                let mut scene = SceneBuilder::new("environment");
+                scene.environment(self.some_environment()?);
+                scene.build()?
             }
         };
-        if environment.is_some() {
-            scene.set_environment(environment);
-        }
-        if scene.lights.is_empty() {
-            eprintln!("warning: the scene has no light: every reading is 0");
+        for warning in &scene.warnings {
+            warn(warning);
         }
         Ok(scene)
     }
 
+    fn some_environment(&self) -> Result<Environment, Failure> {
+        self.environment.load()?.ok_or_else(|| {
+            Failure::usage("nothing to measure: no scene and no environment")
+                .with_help("name a scene file, or give --env FILE or --env uniform:1")
+        })
+    }
+
     /// The bare environment, when that is all there is.
-    fn bare_environment(&self) -> Result<Option<gonio_env::Environment>, Failure> {
-        if self.scene.is_some() {
-            Ok(None)
-        } else {
-            self.environment.load()
+    fn bare_environment(&self) -> Result<Option<Environment>, Failure> {
+        match self.scene {
+            Some(_) => Ok(None),
+            None => self.some_environment().map(Some),
         }
     }
 }
@@ -164,17 +165,7 @@ pub(super) fn run(command: Command) -> Result<(), Failure> {
             point,
             normal,
             distance,
-        } => (
-            source,
-            sensor::radiant_exitance(
-                &source.scene()?,
-                *point,
-                *normal,
-                *distance,
-                &source.options(),
-            )
-            .map_err(usage)?,
-        ),
+        } => (source, exitance(source, *point, *normal, *distance)?),
         Command::Radiance {
             source,
             origin,
@@ -187,6 +178,9 @@ pub(super) fn run(command: Command) -> Result<(), Failure> {
             side_v,
             light,
         } => {
+            if light.is_none() && corner.is_none() {
+                return Err(nothing_to_receive());
+            }
             let scene = source.scene()?;
             let reading = match (light, corner, side_u, side_v) {
                 (Some(light), ..) => flux_of_light(&scene, *light)?,
@@ -196,12 +190,10 @@ pub(super) fn run(command: Command) -> Result<(), Failure> {
                         side_u: *side_u,
                         side_v: *side_v,
                     };
-                    sensor::flux(&scene, &detector, &source.options()).map_err(usage)?
+                    sensor::flux(&scene, &detector, &source.options())?
                 }
                 _ => {
-                    return Err(Failure::usage(
-                        "a rectangle needs --corner, --side-u and --side-v",
-                    ));
+                    return Err(nothing_to_receive());
                 }
             };
             (source, reading)
@@ -210,38 +202,89 @@ pub(super) fn run(command: Command) -> Result<(), Failure> {
     if source.json {
         return print_json(&reading);
     }
-    print(&in_words(&reading));
-    Ok(())
+    print(&in_words(&reading))
+}
+
+fn nothing_to_receive() -> Failure {
+    Failure::usage("it is not said what the flux goes through, or which light it is of")
+        .with_help("give --corner, --side-u and --side-v of a rectangle, or --light NUMBER")
 }
 
 /// Of a bare environment the integral is computed, not sampled.
 fn irradiance(source: &Source, point: Vec3<f32>, normal: Vec3<f32>) -> Result<Reading, Failure> {
     if let Some(environment) = source.bare_environment()? {
-        let n = sensor::unit("normal", normal).map_err(usage)?;
+        let n = sensor::unit("normal", normal)?;
         return Ok(closed_form(
             "irradiance",
             "W m⁻²",
             environment.irradiance(n),
         ));
     }
-    sensor::irradiance(&source.scene()?, point, normal, &source.options()).map_err(usage)
+    Ok(sensor::irradiance(
+        &source.scene()?,
+        point,
+        normal,
+        &source.options(),
+    )?)
+}
+
+/// Where there is no surface nothing leaves: that is more likely a slip than a question.
+fn exitance(
+    source: &Source,
+    point: Vec3<f32>,
+    normal: Vec3<f32>,
+    distance: f32,
+) -> Result<Reading, Failure> {
+    if source.scene.is_none() {
+        return Err(
+            Failure::usage("exitance leaves a surface, and there is no scene")
+                .with_help("name a scene file"),
+        );
+    }
+    let n = sensor::unit("normal", normal)?;
+    let scene = source.scene()?;
+    let towards = Ray {
+        origin: point + n * distance,
+        direction: -n,
+        t_max: 2.0 * distance,
+    };
+    let reading = sensor::radiant_exitance(&scene, point, normal, distance, &source.options())?;
+    if scene.intersect(&towards).is_none() {
+        return Err(Failure::usage(format!(
+            "there is no surface within {distance} of the point {},{},{}",
+            point.x, point.y, point.z
+        ))
+        .with_help("name a point on a surface and its normal, or a larger --distance"));
+    }
+    Ok(reading)
 }
 
 fn radiance(source: &Source, origin: Vec3<f32>, direction: Vec3<f32>) -> Result<Reading, Failure> {
     if let Some(environment) = source.bare_environment()? {
-        let d = sensor::unit("direction", direction).map_err(usage)?;
+        let d = sensor::unit("direction", direction)?;
         let value = environment.radiance(d).map(f64::from);
         return Ok(closed_form("radiance", "W m⁻² sr⁻¹", value));
     }
-    sensor::radiance(&source.scene()?, origin, direction, &source.options()).map_err(usage)
+    Ok(sensor::radiance(
+        &source.scene()?,
+        origin,
+        direction,
+        &source.options(),
+    )?)
 }
 
 fn flux_of_light(scene: &Scene, light: usize) -> Result<Reading, Failure> {
     let count = scene.lights.len();
     if light >= count {
-        return Err(Failure::usage(format!(
-            "there is no light {light}: the scene has {count}"
-        )));
+        return Err(
+            Failure::usage(format!("there is no light {light}: the scene has {count}")).with_help(
+                match count {
+                    0 => "measure the flux through a rectangle".to_owned(),
+                    1 => "name it: --light 0".into(),
+                    _ => format!("name one of 0 to {}", count - 1),
+                },
+            ),
+        );
     }
     match u32::try_from(light)
         .ok()
@@ -264,10 +307,6 @@ fn closed_form(quantity: &'static str, unit: &'static str, value: [f64; 3]) -> R
         samples: 0,
         rejected: 0,
     }
-}
-
-fn usage(error: RenderError) -> Failure {
-    Failure::usage(chain(&error))
 }
 
 /// The reading in lines: one number if the three agree.
@@ -299,31 +338,4 @@ fn in_words(reading: &Reading) -> String {
         );
     }
     text
-}
-
-/// Seven significant digits, without an exponent where it reads well.
-fn significant(value: f64) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    let magnitude = value.abs().log10().floor() as i32;
-    if (-4..7).contains(&magnitude) {
-        format!("{value:.*}", (6 - magnitude).max(0) as usize)
-    } else {
-        format!("{value:.6e}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn seven_digits() {
-        assert_eq!(significant(std::f64::consts::PI), "3.141593");
-        assert_eq!(significant(1234.56789), "1234.568");
-        assert_eq!(significant(0.00012345678), "0.0001234568");
-        assert_eq!(significant(1.5e12), "1.500000e12");
-        assert_eq!(significant(0.0), "0");
-    }
 }

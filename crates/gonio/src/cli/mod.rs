@@ -3,13 +3,17 @@
 //! Exit codes: 0 done, 1 a verification failed, 2 usage, 3 input, 4 interrupted.
 
 mod brdf;
+mod destination;
 mod diff;
 mod env;
+mod environment;
 mod failure;
 mod measure;
 mod parse;
 mod progress;
 mod render;
+mod terminal;
+mod usage;
 
 use clap::{Parser, Subcommand};
 use failure::Failure;
@@ -25,7 +29,8 @@ use std::process::ExitCode;
     after_help = "Examples:\n  \
         gonio render                                    the preview: gonio.png and gonio.exr\n  \
         gonio brdf check all                            is every reflection function physical?\n  \
-        gonio measure irradiance --env uniform:1        π W m⁻²",
+        gonio measure irradiance --env uniform:1        π W m⁻²\n\n\
+        Exit codes: 0 done, 1 a verification failed, 2 usage, 3 input, 4 interrupted.",
     propagate_version = true,
     disable_help_subcommand = true
 )]
@@ -60,7 +65,7 @@ pub fn main() -> ExitCode {
             let _ = e.print();
             return ExitCode::SUCCESS;
         }
-        Err(e) => Err(failure::of_arguments(&e)),
+        Err(e) => Err(usage::of_arguments::<Arguments>(&e)),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -76,27 +81,6 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Measure(command) => measure::run(command),
         Command::Diff(arguments) => diff::run(&arguments),
     }
-}
-
-/// Prints to standard output; a reader that closes the pipe early (`| head`) ends the output, not the command.
-pub(crate) fn print(text: &str) {
-    use std::io::Write;
-    let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| {
-        if text.ends_with('\n') {
-            Ok(())
-        } else {
-            out.write_all(b"\n")
-        }
-    });
-}
-
-/// Prints a value as indented JSON.
-pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(value)
-        .map_err(|e| Failure::input(format!("the result has no JSON form: {e}")))?;
-    print(&text);
-    Ok(())
 }
 
 #[cfg(test)]

@@ -1,7 +1,40 @@
 //! Values of arguments: sizes, durations, vectors, angles.
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use gonio_image::tonemap::ToneMap;
 use gonio_num::{Real, Vec3};
+use gonio_render::PixelFilter;
 use std::time::Duration;
+
+/// The name of a tone map.
+pub(crate) fn tone_map() -> impl TypedValueParser<Value = ToneMap> {
+    PossibleValuesParser::new([
+        PossibleValue::new("linear").alias("srgb"),
+        PossibleValue::new("aces"),
+        PossibleValue::new("agx"),
+        PossibleValue::new("pbr-neutral").alias("neutral"),
+    ])
+    .try_map(|name| name.parse::<ToneMap>())
+}
+
+/// The name of a pixel filter.
+pub(crate) fn pixel_filter() -> impl TypedValueParser<Value = PixelFilter> {
+    PossibleValuesParser::new(["box", "tent", "blackman-harris"])
+        .try_map(|name| name.parse::<PixelFilter>())
+}
+
+/// A whole number from `least` to `most`.
+pub(crate) fn whole<T>(least: T, most: T) -> impl Fn(&str) -> Result<T, String> + Clone
+where
+    T: std::str::FromStr + PartialOrd + std::fmt::Display + Copy,
+{
+    move |text| {
+        text.parse::<T>()
+            .ok()
+            .filter(|n| (least..=most).contains(n))
+            .ok_or_else(|| format!("expected a whole number from {least} to {most}"))
+    }
+}
 
 /// `1280x720` as width and height.
 pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
@@ -124,6 +157,7 @@ mod tests {
 
     #[test]
     fn good_values() {
+        assert_eq!(whole(1_u32, 9)("9"), Ok(9));
         assert_eq!(size("1280x720"), Ok([1280, 720]));
         assert_eq!(size("3×4"), Ok([3, 4]));
         assert_eq!(duration("1.5m"), Ok(Duration::from_secs(90)));
@@ -150,6 +184,9 @@ mod tests {
 
     #[test]
     fn bad_values() {
+        for text in ["", "0", "10", "-1", "1.5", "x"] {
+            assert!(whole(1_u32, 9)(text).is_err(), "{text}");
+        }
         for text in [
             "",
             "12",

@@ -26,9 +26,10 @@ impl Bar {
                 ProgressDrawTarget::stderr()
             },
         );
-        if let Ok(style) = ProgressStyle::with_template("{bar:32.cyan/dim} {msg}") {
+        if let Ok(style) = ProgressStyle::with_template("{bar:18.cyan/dim} {msg}") {
             bar.set_style(style.progress_chars("━━─"));
         }
+        on_stop_request(&bar);
         Self { bar, target }
     }
 
@@ -36,16 +37,18 @@ impl Bar {
     pub fn update(&self, progress: &Progress) {
         let fraction = self.fraction(progress).clamp(0.0, 1.0);
         let seconds = progress.elapsed.as_secs_f64();
-        self.bar.set_position((fraction * STEPS as f64) as u64);
         self.bar.set_message(format!(
             "{} spp · {} rays/s · noise {} · {} left",
             progress.samples,
             quantity(progress.rays.total() as f64 / seconds.max(1e-9)),
             percent(progress.noise),
             clock(Duration::from_secs_f64(
-                (seconds * (1.0 - fraction) / fraction.max(1e-3)).min(359_999.0)
+                (seconds * (1.0 - fraction) / fraction.max(1e-3))
+                    .ceil()
+                    .min(359_999.0)
             )),
         ));
+        self.bar.set_position((fraction * STEPS as f64) as u64);
     }
 
     /// Takes the bar away.
@@ -74,7 +77,7 @@ pub(crate) fn quantity(value: f64) -> String {
         v if v >= 1e9 => (v / 1e9, " G"),
         v if v >= 1e6 => (v / 1e6, " M"),
         v if v >= 1e3 => (v / 1e3, " k"),
-        v => (v, " "),
+        v => (v, ""),
     };
     let digits = if scaled >= 100.0 {
         0
@@ -88,10 +91,10 @@ pub(crate) fn quantity(value: f64) -> String {
 
 /// A fraction as per cent, or a dash before there is one.
 pub(crate) fn percent(fraction: f64) -> String {
-    if fraction.is_finite() {
-        format!("{:.1} %", 100.0 * fraction)
-    } else {
-        "–".into()
+    match 100.0 * fraction {
+        p if p < 999.95 => format!("{p:.1} %"),
+        p if p.is_finite() => "> 999 %".into(),
+        _ => "–".into(),
     }
 }
 
@@ -104,20 +107,28 @@ pub(crate) fn clock(time: Duration) -> String {
     }
 }
 
-/// Whether the user has asked to stop (Ctrl-C, or a termination signal). The first question begins to listen.
+static STOP: AtomicBool = AtomicBool::new(false);
+static LISTENING: OnceLock<()> = OnceLock::new();
+
+/// Whether the user has asked to stop (Ctrl-C, or a termination signal) since the first bar was made.
 pub(crate) fn stop_requested() -> bool {
-    static REQUESTED: AtomicBool = AtomicBool::new(false);
-    static LISTENING: OnceLock<()> = OnceLock::new();
+    STOP.load(Ordering::Relaxed)
+}
+
+/// Begins to listen for the wish to stop. The first one is answered above `bar`; a second one ends the process at once.
+fn on_stop_request(bar: &ProgressBar) {
     LISTENING.get_or_init(|| {
+        let bar = bar.clone();
         // Without a handler the signal ends the process at once, which is the platform's default.
-        let _ = ctrlc::set_handler(|| {
-            // A second signal ends at once.
-            if REQUESTED.swap(true, Ordering::Relaxed) {
+        let _ = ctrlc::set_handler(move || {
+            if STOP.swap(true, Ordering::Relaxed) {
                 std::process::exit(4);
             }
+            bar.println(
+                "note: stopping after this pass; a second Ctrl-C stops at once, without pictures",
+            );
         });
     });
-    REQUESTED.load(Ordering::Relaxed)
 }
 
 #[cfg(test)]
@@ -128,9 +139,11 @@ mod tests {
     fn figures_are_readable() {
         assert_eq!(quantity(12_345_678.0), "12.3 M");
         assert_eq!(quantity(4_560.0), "4.56 k");
-        assert_eq!(quantity(7.0), "7.00 ");
+        assert_eq!(quantity(7.0), "7.00");
         assert_eq!(percent(0.0213), "2.1 %");
+        assert_eq!(percent(12.0), "> 999 %");
         assert_eq!(percent(f64::INFINITY), "–");
+        assert_eq!(percent(f64::NAN), "–");
         assert_eq!(clock(Duration::from_secs(7)), "0:07");
         assert_eq!(clock(Duration::from_secs(3723)), "1:02:03");
     }

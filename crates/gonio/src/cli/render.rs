@@ -1,11 +1,13 @@
 //! `gonio render`.
 
-use super::failure::{Failure, chain};
+use super::destination;
+use super::environment::EnvironmentArguments;
+use super::failure::Failure;
+use super::parse;
 use super::progress::{self, Bar};
-use super::{parse, print, print_json};
+use super::terminal::{note, print, print_json, warn};
 use crate::preview;
 use gonio_brdf::ModelSpec;
-use gonio_env::{Environment, Layout};
 use gonio_image::tonemap::ToneMap;
 use gonio_radiometry::sequence::SamplerKind;
 use gonio_render::integrator::{Direct, Path as PathTracer};
@@ -22,140 +24,92 @@ const NO_LIMIT: u32 = 1 << 20;
 #[command(after_help = "Examples:\n  \
     gonio render\n  \
     gonio render helmet.gltf --env sunset.hdr --spp 256 -o helmet.exr -o helmet.png\n  \
-    gonio render --material ggx:metal=copper,roughness=0.4 --time 30s")]
+    gonio render --material ggx:metal=copper,roughness=0.4 --time 30s\n\n\
+    A small scene, ball.toml:\n  \
+    [environment]\n  \
+    uniform = 1.0\n\n  \
+    [[material]]\n  \
+    name = \"gold\"\n  \
+    model = \"torrance-sparrow\"\n  \
+    params = { metal = \"gold\", roughness = 0.3 }\n\n  \
+    [[shape]]\n  \
+    kind = \"sphere\"\n  \
+    material = \"gold\"\n\n\
+    Ctrl-C ends the rendering after the pass, writes the pictures, and exits with 4.")]
 pub(super) struct Arguments {
     /// A scene: .toml, .gltf, .glb, .obj or .ply; without one, the embedded preview
     scene: Option<PathBuf>,
-    /// Where to write: .exr (radiance and layers), .hdr or .png; may be repeated [default: gonio.png and gonio.exr]
-    #[arg(short, long = "output", value_name = "FILE")]
-    output: Vec<PathBuf>,
-    /// Samples per pixel [default: 64, or as many as --time or --noise take]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    spp: Option<u32>,
-    /// Stop after this time: 30s, 5m, 1h
-    #[arg(long, value_name = "TIME", value_parser = parse::duration)]
-    time: Option<Duration>,
-    /// Stop when 95 % of the pixels have a relative error below this: 2%
-    #[arg(long, value_name = "ERROR", value_parser = parse::fraction)]
-    noise: Option<f64>,
-    /// Size of the image [default: the scene's, or 960x540]
-    #[arg(long, value_name = "WxH", value_parser = parse::size)]
-    size: Option<[u32; 2]>,
-    /// How the reflection equation is solved
-    #[arg(long, value_enum, default_value_t = IntegratorName::Path)]
-    integrator: IntegratorName,
-    /// Reflections that light may make, for the path integrator
-    #[arg(long, value_name = "N", default_value_t = 64)]
-    max_bounces: u32,
-    /// Where samples come from
-    #[arg(long, value_enum, default_value_t = SamplerName::Sobol)]
-    sampler: SamplerName,
-    /// Pixel filter: box, tent or blackman-harris
-    #[arg(long, default_value = "blackman-harris")]
-    filter: PixelFilter,
-    /// Seed of the samples; the same seed gives the same image, bit for bit
-    #[arg(long, value_name = "S", default_value_t = 0)]
-    seed: u64,
-    /// Threads [default: one a processor]; the image does not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    threads: Option<u16>,
-    #[command(flatten)]
-    environment: EnvironmentArguments,
-    /// Replace materials: [MATERIAL=]MODEL:key=value,…; without MATERIAL, all of them (in the preview, the object's)
-    #[arg(long, value_name = "SPEC")]
-    material: Vec<String>,
-    /// The camera, by name or by number from 0
-    #[arg(long, value_name = "CAMERA")]
-    camera: Option<String>,
-    /// Exposure of PNG files, in stops
-    #[arg(long, value_name = "EV", default_value = "0", value_parser = parse::finite, allow_hyphen_values = true)]
-    exposure: f32,
-    /// Tone map of PNG files: linear, aces, agx or pbr-neutral [default: pbr-neutral]
-    #[arg(long)]
-    tonemap: Option<ToneMap>,
-    /// No progress bar and no summary
+    /// Nothing but warnings and errors
     #[arg(short, long)]
     quiet: bool,
     /// Print the summary as JSON
     #[arg(long)]
     json: bool,
-}
-
-/// The environment, as `render` and `measure` take it.
-#[derive(clap::Args)]
-pub(super) struct EnvironmentArguments {
-    /// Light from infinitely far away: a panorama (.hdr, .exr), or uniform:RADIANCE
-    #[arg(long, value_name = "FILE")]
-    pub env: Option<String>,
-    /// Turn the environment about the vertical, counter-clockwise seen from above
-    #[arg(long, value_name = "DEG", default_value = "0", value_parser = parse::finite, allow_hyphen_values = true)]
-    pub env_rotate: f32,
-    #[command(flatten)]
-    pub reading: PanoramaArguments,
-}
-
-impl EnvironmentArguments {
-    /// The environment that was asked for, if any.
-    pub fn load(&self) -> Result<Option<Environment>, Failure> {
-        let Some(text) = &self.env else {
-            return Ok(None);
-        };
-        let environment = self.reading.parse(text)?;
-        Ok(Some(environment.rotated_deg(self.env_rotate)))
-    }
-}
-
-/// How a panorama is read.
-#[derive(clap::Args)]
-pub(super) struct PanoramaArguments {
-    /// Layout of the panorama: lat-long, angular or mirror-ball [default: found from its shape]
-    #[arg(long, value_name = "LAYOUT")]
-    env_layout: Option<Layout>,
-    /// Replace NaN, infinite and negative texels of the panorama instead of refusing it
-    #[arg(long)]
-    env_sanitize: bool,
-}
-
-impl PanoramaArguments {
-    /// The environment that `text` names: a file, or uniform:RADIANCE.
-    pub fn parse(&self, text: &str) -> Result<Environment, Failure> {
-        let options = gonio_env::LoadOptions {
-            layout: self.env_layout,
-            sanitize: self.env_sanitize,
-            ..Default::default()
-        };
-        Environment::parse(text, &options).map_err(|e| {
-            let help = e
-                .help()
-                .unwrap_or("'gonio env info --help' says what is read".into());
-            Failure::input(chain(&e)).with_help(help)
-        })
-    }
+    /// Where to write: .exr (radiance and layers), .hdr or .png; may be repeated [default: gonio.png and gonio.exr]
+    #[arg(short, long = "output", value_name = "FILE", help_heading = "Picture")]
+    output: Vec<PathBuf>,
+    /// Size in pixels [default: the scene's, or 960x540]
+    #[arg(long, value_name = "WxH", value_parser = parse::size, allow_hyphen_values = true, help_heading = "Picture")]
+    size: Option<[u32; 2]>,
+    /// The camera, by name or by number from 0
+    #[arg(long, value_name = "CAMERA", help_heading = "Picture")]
+    camera: Option<String>,
+    /// Exposure of PNG files, in stops
+    #[arg(long, value_name = "EV", default_value = "0", value_parser = parse::finite, allow_hyphen_values = true, help_heading = "Picture")]
+    exposure: f32,
+    /// Tone map of PNG files
+    #[arg(long, value_name = "NAME", default_value = "pbr-neutral", value_parser = parse::tone_map(), help_heading = "Picture")]
+    tonemap: ToneMap,
+    /// Samples per pixel [default: 64, or as many as --time or --noise take]
+    #[arg(long, value_name = "N", value_parser = parse::whole(1, u32::MAX), allow_hyphen_values = true, help_heading = "How long: ends at the first of these")]
+    spp: Option<u32>,
+    /// Stop after this time: 30s, 5m, 1h
+    #[arg(long, value_name = "TIME", value_parser = parse::duration, allow_hyphen_values = true, help_heading = "How long: ends at the first of these")]
+    time: Option<Duration>,
+    /// Stop when 95 % of the pixels have a relative error below this: 2%
+    #[arg(long, value_name = "ERROR", value_parser = parse::fraction, allow_hyphen_values = true, help_heading = "How long: ends at the first of these")]
+    noise: Option<f64>,
+    /// Replace materials: [MATERIAL=]MODEL:key=value,…; without MATERIAL, all of them (in the preview, the object's)
+    #[arg(long, value_name = "SPEC", help_heading = "Scene")]
+    material: Vec<String>,
+    #[command(flatten, next_help_heading = "Scene")]
+    environment: EnvironmentArguments,
+    /// How the reflection equation is solved: over many reflections (path), or over one (direct)
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = IntegratorName::Path, help_heading = "Method")]
+    integrator: IntegratorName,
+    /// Reflections that light may make, for the path integrator
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = parse::whole(0, u32::MAX), allow_hyphen_values = true, help_heading = "Method")]
+    max_bounces: u32,
+    /// Where samples come from: Owen-scrambled Sobol' points, or independent random numbers
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = SamplerName::Sobol, help_heading = "Method")]
+    sampler: SamplerName,
+    /// What a pixel averages over
+    #[arg(long, value_name = "NAME", default_value = "blackman-harris", value_parser = parse::pixel_filter(), help_heading = "Method")]
+    filter: PixelFilter,
+    /// Seed of the samples; the same seed gives the same picture, bit for bit
+    #[arg(long, value_name = "S", default_value_t = 0, value_parser = parse::whole(0, u64::MAX), allow_hyphen_values = true, help_heading = "Method")]
+    seed: u64,
+    /// Threads [default: one a processor]; the picture does not depend on it
+    #[arg(long, value_name = "N", value_parser = parse::whole(1, 4096), allow_hyphen_values = true, help_heading = "Method")]
+    threads: Option<usize>,
 }
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum IntegratorName {
-    /// Many reflections
     Path,
-    /// The reflection equation alone: one reflection
     Direct,
 }
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum SamplerName {
-    /// Owen-scrambled Sobol' points
     Sobol,
-    /// Independent random numbers
     Independent,
 }
-
-/// The tone map of PNG files unless another is asked for.
-const TONE_MAP: ToneMap = ToneMap::PbrNeutral;
 
 /// What a rendering did, for people and for programs.
 #[derive(serde::Serialize)]
 struct Summary<'a> {
-    outputs: &'a [PathBuf],
+    outputs: &'a [&'a PathBuf],
     width: u32,
     height: u32,
     samples_per_pixel: u32,
@@ -166,20 +120,19 @@ struct Summary<'a> {
     seed: u64,
     rejected_samples: &'a gonio_render::Rejected,
     warnings: &'a [String],
+    notes: &'a [String],
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let outputs = outputs(arguments)?;
-    let scene = scene(arguments)?;
+    let (scene, notes) = scene(arguments)?;
     let camera = camera(arguments, &scene);
     let options = options(arguments, &scene);
+    scene.warnings.iter().for_each(|text| warn(text));
     if !arguments.quiet {
-        for warning in &scene.warnings {
-            eprintln!("warning: {warning}");
-        }
+        notes.iter().for_each(|text| note(text));
     }
     let bar = Bar::new(options.target, arguments.quiet);
-    progress::stop_requested();
     let mut last = None;
     let mut work = || {
         gonio_render::render(
@@ -200,23 +153,36 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let rendered = match arguments.threads {
         None => work(),
         Some(threads) => rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.into())
+            .num_threads(threads)
             .build()
-            .map_err(|e| Failure::usage(format!("{threads} threads can't be started: {e}")))?
+            .map_err(|e| {
+                Failure::usage(format!("{threads} threads can't be started: {e}"))
+                    .with_help("choose fewer --threads")
+            })?
             .install(work),
     };
     bar.finish();
-    let (film, stop) = rendered.map_err(|e| Failure::usage(chain(&e)))?;
-    for path in &outputs {
-        write(arguments, &options, &film, path)?;
-    }
+    let (film, stop) = rendered?;
     let progress = last.ok_or_else(|| Failure::usage("nothing was rendered"))?;
+    // One that can't be written is no reason to lose the others.
+    let (written, failures): (Vec<_>, Vec<_>) = outputs
+        .iter()
+        .map(|path| write(arguments, &options, &film, path).map(|()| path))
+        .partition(Result::is_ok);
+    let written: Vec<&PathBuf> = written.into_iter().flatten().collect();
     report(
-        arguments, &options, &scene, &film, &outputs, &progress, stop,
+        arguments, &options, &scene, &film, &written, &progress, stop, &notes,
     )?;
+    if let Some(failure) = failures.into_iter().find_map(Result::err) {
+        return Err(failure);
+    }
     if stop == Stop::Interrupted {
         return Err(Failure::interrupted(format!(
-            "interrupted after {} samples per pixel; what there was is written",
+            "interrupted after {} samples per pixel; the pictures are written",
+            progress.samples
+        ))
+        .with_help(format!(
+            "the same command with --spp {} gives the same pictures",
             progress.samples
         )));
     }
@@ -225,82 +191,69 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The output files, known to be writable in kind and place before any time is spent.
 fn outputs(arguments: &Arguments) -> Result<Vec<PathBuf>, Failure> {
-    if arguments.output.is_empty() {
-        return Ok(vec!["gonio.png".into(), "gonio.exr".into()]);
+    let paths = match arguments.output.is_empty() {
+        true => vec!["gonio.png".into(), "gonio.exr".into()],
+        false => arguments.output.clone(),
+    };
+    for path in &paths {
+        destination::check(path)?;
     }
-    for path in &arguments.output {
-        check_output(path)?;
-    }
-    Ok(arguments.output.clone())
+    Ok(paths)
 }
 
-/// Fails unless `path` has a picture's extension and lies in a folder that exists.
-pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
-    let extension = path
-        .extension()
-        .and_then(|e| e.to_str())
-        .unwrap_or_default()
-        .to_lowercase();
-    if !["png", "exr", "hdr"].contains(&extension.as_str()) {
-        return Err(Failure::usage(format!(
-            "{}: no picture format is known by the extension '{extension}'",
-            path.display()
-        ))
-        .with_help("end the name in .exr, .hdr or .png"));
-    }
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    if !folder.is_dir() {
-        return Err(Failure::input(format!(
-            "{}: the folder {} does not exist",
-            path.display(),
-            folder.display()
-        ))
-        .with_help(format!("make it: mkdir -p '{}'", folder.display())));
-    }
-    Ok(())
-}
-
-fn scene(arguments: &Arguments) -> Result<Scene, Failure> {
+/// The scene as the arguments ask for it, and what was chosen where they and the file are silent.
+fn scene(arguments: &Arguments) -> Result<(Scene, Vec<String>), Failure> {
+    let mut notes = Vec::new();
     let load = LoadOptions {
         camera: arguments.camera.clone(),
         ..LoadOptions::default()
     };
     let mut scene = match &arguments.scene {
-        Some(path) => Scene::load(path, &load).map_err(|e| Failure::input(chain(&e)))?,
-        None => preview::scene().map_err(|e| Failure::input(chain(&e)))?,
+        Some(path) => Scene::load(path, &load)?,
+        None => preview::load(load)?,
     };
     for text in &arguments.material {
-        let (target, spec) = match text.split_once(['=', ':']) {
-            Some((name, rest)) if text.as_bytes()[name.len()] == b'=' => (name, rest),
-            _ if arguments.scene.is_none() => (preview::OBJECT, text.as_str()),
-            _ => ("*", text.as_str()),
-        };
-        let spec = ModelSpec::parse(spec).map_err(|e| {
-            Failure::usage(format!("--material '{text}': {}", chain(&e))).with_help(
-                "'gonio brdf list' names the models, 'gonio brdf show NAME' their parameters",
-            )
-        })?;
-        scene
-            .replace_material(target, &spec)
-            .map_err(|e| Failure::usage(format!("--material '{text}': {}", chain(&e))))?;
+        replace_material(&mut scene, text, arguments.scene.is_none())
+            .map_err(|failure| failure.about(&format!("--material '{text}'")))?;
     }
-    if let Some(environment) = arguments.environment.load()? {
-        scene.set_environment(Some(environment));
-    } else if arguments.environment.env_rotate != 0.0 {
-        let turned = scene
-            .lights
-            .environment()
-            .map(|e| e.clone().rotated_deg(arguments.environment.env_rotate));
-        scene.set_environment(turned);
+    arguments.environment.apply(&mut scene)?;
+    if scene.lights.len() == 0 {
+        let panorama = preview::panorama()?;
+        scene.set_environment(Some(arguments.environment.turned(panorama)));
+        notes.push(
+            "the scene has no light: the built-in panorama lights it; --env chooses another".into(),
+        );
     }
-    if scene.lights.is_empty() {
-        let panorama = preview::panorama().map_err(|e| Failure::input(chain(&e)))?;
-        scene.set_environment(Some(panorama.rotated_deg(arguments.environment.env_rotate)));
+    if scene.cameras.is_empty() {
+        notes.push("the scene has no camera: it is seen from where all of it is in view".into());
     }
-    Ok(scene)
+    Ok((scene, notes))
+}
+
+/// Follows one `--material`.
+fn replace_material(scene: &mut Scene, text: &str, preview: bool) -> Result<(), Failure> {
+    // Names of materials may hold any character, so the scene's own come first.
+    let known = scene
+        .material_names()
+        .into_iter()
+        .filter(|name| {
+            text.strip_prefix(name)
+                .is_some_and(|rest| rest.starts_with('='))
+        })
+        .max_by_key(|name| name.len())
+        .map(str::len);
+    let end = known.or_else(|| {
+        text.find(['=', ':', '('])
+            .filter(|i| text[*i..].starts_with('='))
+    });
+    let (target, spec) = match end {
+        Some(end) => (&text[..end], &text[end + 1..]),
+        None if preview => (preview::OBJECT, text),
+        None => ("*", text),
+    };
+    let spec = ModelSpec::parse(spec)?;
+    scene.replace_material(target, &spec)?;
+    Ok(())
 }
 
 fn camera(arguments: &Arguments, scene: &Scene) -> Camera {
@@ -347,22 +300,17 @@ fn write(
     film: &Film,
     path: &Path,
 ) -> Result<(), Failure> {
-    let written = match path
-        .extension()
-        .and_then(|e| e.to_str())
-        .map(str::to_lowercase)
-        .as_deref()
-    {
-        Some("exr") => film
+    match destination::extension(path).as_str() {
+        "exr" => film
             .layers(metadata(arguments, options, film))
-            .write_exr(path),
-        Some("png") => {
-            let tonemap = arguments.tonemap.unwrap_or(TONE_MAP);
-            film.image().write_png(path, tonemap, arguments.exposure)
+            .write_exr(path)?,
+        "png" => {
+            film.image()
+                .write_png(path, arguments.tonemap, arguments.exposure)?;
         }
-        _ => film.image().write(path),
-    };
-    written.map_err(|e| Failure::input(chain(&e)))
+        _ => film.image().write(path)?,
+    }
+    Ok(())
 }
 
 /// How the image came to be, as text attributes of the file.
@@ -394,9 +342,10 @@ fn report(
     options: &RenderOptions,
     scene: &Scene,
     film: &Film,
-    outputs: &[PathBuf],
+    outputs: &[&PathBuf],
     progress: &Progress,
     stop: Stop,
+    notes: &[String],
 ) -> Result<(), Failure> {
     let rejected = film.rejected();
     if let Some(first) = &rejected.first {
@@ -404,11 +353,11 @@ fn report(
             .material
             .and_then(|m| scene.materials.get(m as usize))
             .map_or("no surface", |m| m.name.as_str());
-        eprintln!(
-            "warning: {} samples were negative or not finite and count as black; the first: pixel {}, {}, sample {}, \
+        warn(&format!(
+            "{} samples were negative or not finite and count as black; the first: pixel {}, {}, sample {}, \
              material '{material}', radiance {:?}",
             rejected.count, first.pixel[0], first.pixel[1], first.sample, first.radiance
-        );
+        ));
     }
     if arguments.json {
         return print_json(&Summary {
@@ -423,6 +372,7 @@ fn report(
             seed: options.seed,
             rejected_samples: rejected,
             warnings: &scene.warnings,
+            notes,
         });
     }
     if arguments.quiet {
@@ -430,16 +380,17 @@ fn report(
     }
     let seconds = progress.elapsed.as_secs_f64();
     print(&format!(
-        "{}×{} pixels, {} samples each, {} rays in {seconds:.1} s ({}rays/s), noise {}",
+        "{}×{} pixels, {} sample{} each, {} rays in {seconds:.1} s ({} rays/s), noise {}",
         options.width,
         options.height,
         progress.samples,
-        progress::quantity(progress.rays.total() as f64).trim_end(),
+        if progress.samples == 1 { "" } else { "s" },
+        progress::quantity(progress.rays.total() as f64),
         progress::quantity(progress.rays.total() as f64 / seconds.max(1e-9)),
         progress::percent(progress.noise),
-    ));
+    ))?;
     for path in outputs {
-        print(&format!("wrote {}", path.display()));
+        print(&format!("wrote {}", path.display()))?;
     }
     Ok(())
 }

@@ -1,0 +1,73 @@
+//! The environment, as `render`, `measure` and `env` take it.
+
+use super::failure::Failure;
+use super::parse;
+use gonio_env::{Environment, Layout};
+use gonio_scene::Scene;
+
+/// Which light comes from infinitely far away.
+#[derive(clap::Args)]
+pub(super) struct EnvironmentArguments {
+    /// Light from infinitely far away: a panorama (.hdr, .exr, .png, .jpg), or uniform:RADIANCE
+    #[arg(long, value_name = "FILE")]
+    env: Option<String>,
+    /// Turn the environment about the vertical, counter-clockwise seen from above
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = parse::finite, allow_hyphen_values = true)]
+    env_rotate: f32,
+    #[command(flatten)]
+    reading: PanoramaArguments,
+}
+
+impl EnvironmentArguments {
+    /// The environment that was asked for, if any.
+    pub fn load(&self) -> Result<Option<Environment>, Failure> {
+        let Some(text) = &self.env else {
+            return Ok(None);
+        };
+        Ok(Some(self.turned(self.reading.parse(text)?)))
+    }
+
+    /// Puts the environment that was asked for into the scene, or turns the scene's own.
+    pub fn apply(&self, scene: &mut Scene) -> Result<(), Failure> {
+        if let Some(environment) = self.load()? {
+            scene.set_environment(Some(environment));
+        } else if self.env_rotate != 0.0
+            && let Some(environment) = scene.lights.environment().cloned()
+        {
+            scene.set_environment(Some(self.turned(environment)));
+        }
+        Ok(())
+    }
+
+    /// `environment`, turned as asked.
+    pub fn turned(&self, environment: Environment) -> Environment {
+        environment.rotated_deg(self.env_rotate)
+    }
+}
+
+/// How a panorama is read.
+#[derive(clap::Args)]
+pub(super) struct PanoramaArguments {
+    /// Layout of the panorama: lat-long, angular or mirror-ball [default: found from its shape]
+    #[arg(long, value_name = "LAYOUT")]
+    env_layout: Option<String>,
+    /// Replace NaN, infinite and negative texels of the panorama instead of refusing it
+    #[arg(long)]
+    env_sanitize: bool,
+}
+
+impl PanoramaArguments {
+    /// The environment that `text` names: a file, or uniform:RADIANCE.
+    pub fn parse(&self, text: &str) -> Result<Environment, Failure> {
+        let layout = match &self.env_layout {
+            None => None,
+            Some(word) => Some(word.parse::<Layout>()?),
+        };
+        let options = gonio_env::LoadOptions {
+            layout,
+            sanitize: self.env_sanitize,
+            ..Default::default()
+        };
+        Ok(Environment::parse(text, &options)?)
+    }
+}
