@@ -1,6 +1,7 @@
 //! Checks and chores of this repository, run as `cargo xtask NAME`.
 
 mod house;
+mod links;
 
 use std::process::ExitCode;
 
@@ -9,14 +10,18 @@ Usage: cargo xtask <check>
 
   floors   no crate depends on a higher floor, or on another of its own
   files    no source file is longer than 600 lines
-  house    both of them";
+  links    documents link to files that exist; every page of the book is in its summary
+  house    all of them";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let outcome = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["floors"] => house::floors(),
         ["files"] => house::files(),
-        ["house"] => house::floors().and_then(|()| house::files()),
+        ["links"] => links::links(),
+        ["house"] => house::floors()
+            .and_then(|()| house::files())
+            .and_then(|()| links::links()),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
             Ok(())

@@ -27,3 +27,6 @@ pub use gonio_verify as verify;
 
 pub mod cli;
 pub mod preview;
+
+#[cfg(doctest)]
+mod documents;

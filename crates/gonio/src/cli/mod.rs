@@ -5,6 +5,8 @@
 mod brdf;
 mod destination;
 mod diff;
+#[cfg(test)]
+mod documents;
 mod env;
 mod environment;
 mod failure;

@@ -1,0 +1,14 @@
+//! Writes the book's pages about models: `cargo run -p gonio-brdf --example model_pages`.
+
+mod page;
+
+fn main() -> Result<(), String> {
+    let folder = page::folder();
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    for (name, text) in page::pages()? {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+        println!("wrote {}", path.display());
+    }
+    Ok(())
+}

@@ -1,0 +1,202 @@
+//! The book's pages about models, made of the registry and of the comments above the formulas.
+
+use gonio_brdf::{Declares, Kind, ModelInfo, ModelSpec, ParameterInfo, registry, showcase};
+use std::path::{Path, PathBuf};
+
+/// Said at the top of each page.
+const NOTE: &str = "<!-- Made by `cargo run -p gonio-brdf --example model_pages`: change the model's source instead. -->";
+
+/// The folder of the pages.
+pub fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../book/src/models")
+}
+
+/// Every page: file name and text.
+///
+/// # Errors
+/// A model whose source has no comment above its structure, in words.
+pub fn pages() -> Result<Vec<(String, String)>, String> {
+    let mut pages = vec![("README.md".to_owned(), index())];
+    for info in registry::models() {
+        pages.push((format!("{}.md", info.name), page(info)?));
+    }
+    Ok(pages)
+}
+
+fn index() -> String {
+    let mut text = format!(
+        "# Models\n\n{NOTE}\n\nEach page is made from the model's entry in the registry and from the comment above its formula. \
+         `gonio brdf list` prints the same list, `gonio brdf show NAME` the parameters.\n\n| model | what it is |\n|---|---|\n"
+    );
+    for info in registry::models() {
+        text += &format!("| [`{0}`]({0}.md) | {1} |\n", info.name, cell(info.summary));
+    }
+    text + "\nHow a model is written on a command line or in a scene: [Describing a model](../describing-a-model.md).\n"
+}
+
+fn page(info: &ModelInfo) -> Result<String, String> {
+    let file = format!("{}.rs", info.name.replace('-', "_"));
+    let mut text = format!(
+        "# {}\n\n{NOTE}\n\n{}.\n\n## Equation\n\n{}\n\nSource: {}.\n\nIn the code: `crates/gonio-brdf/src/model/{file}`. ",
+        info.name,
+        capitalised(info.summary),
+        comment_above_the_structure(&file)?,
+        info.paper
+    );
+    text += if info.recordable {
+        "The formula can be written as shader code.\n"
+    } else {
+        "It cannot be written as shader code.\n"
+    };
+    text += "\n## Parameters\n\n| name | values | default | meaning |\n|---|---|---|---|\n";
+    for parameter in info.parameters {
+        text += &format!(
+            "| `{}` | {} | {} | {} |\n",
+            parameter.name,
+            cell(&parameter.expected()),
+            default(parameter),
+            cell(parameter.meaning)
+        );
+    }
+    if let Some(name) = info.positional {
+        text += &format!("\nA value without a name sets `{name}`.\n");
+    }
+    if info.parameters.iter().any(ParameterInfo::is_continuous) {
+        text += "\nIn a scene, textures can drive its numbers and colours.\n";
+    }
+    if !info.aliases.is_empty() {
+        text += "\n## Other names\n\n| name | sets |\n|---|---|\n";
+        for alias in info.aliases {
+            let preset: Vec<String> = alias
+                .preset
+                .iter()
+                .map(|(key, value)| format!("`{key}={value}`"))
+                .collect();
+            let preset = if preset.is_empty() {
+                "nothing: the same model".into()
+            } else {
+                preset.join(", ")
+            };
+            text += &format!("| `{}` | {preset} |\n", alias.name);
+        }
+    }
+    Ok(text + &declared(info) + &commands(info))
+}
+
+/// The documentation comment of the structure in a model's source: its equation.
+fn comment_above_the_structure(file: &str) -> Result<String, String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("src/model")
+        .join(file);
+    let source = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+    let mut comment: Vec<&str> = Vec::new();
+    for line in source.lines() {
+        if let Some(words) = line.strip_prefix("///") {
+            comment.push(words.strip_prefix(' ').unwrap_or(words));
+        } else if line.starts_with("pub struct ") && !comment.is_empty() {
+            // Rustdoc's links have no target here: [`Name`] becomes `Name`.
+            return Ok(comment.join("\n").replace("[`", "`").replace("`]", "`"));
+        } else if !line.starts_with("#[") {
+            comment.clear();
+        }
+    }
+    Err(format!(
+        "{}: no comment above a `pub struct`",
+        path.display()
+    ))
+}
+
+fn default(parameter: &ParameterInfo) -> String {
+    match (parameter.default_value(), parameter.kind) {
+        (Some(value), _) => format!("`{value}`"),
+        (None, Kind::Path | Kind::Models) => "to be given".into(),
+        (None, _) => "none".into(),
+    }
+}
+
+/// The declared properties: of the defaults, and of each variant that differs from them.
+fn declared(info: &ModelInfo) -> String {
+    let mut rows: Vec<(String, Declares)> = Vec::new();
+    let mut add = |name: String, declares: Declares| {
+        let first = rows.is_empty();
+        if first || rows.iter().all(|(_, known)| *known != declares) {
+            rows.push((name, declares));
+        }
+    };
+    let variants = showcase();
+    for spec in variants.iter().filter(|s| s.name == info.name) {
+        add(format!("`{spec}`"), (info.declares)(spec));
+    }
+    if let Ok(spec) = ModelSpec::new(info.name) {
+        add(format!("`{spec}`"), (info.declares)(&spec));
+        // The ends of each range, one parameter at a time.
+        for parameter in info.parameters {
+            let (Kind::Number { low, high, .. } | Kind::Colour { low, high, .. }) = parameter.kind
+            else {
+                continue;
+            };
+            for end in [low, high] {
+                let mut spec = spec.clone();
+                if spec
+                    .set(parameter.name, gonio_brdf::Value::Number(end))
+                    .is_ok()
+                {
+                    add(format!("`{spec}`"), (info.declares)(&spec));
+                }
+            }
+        }
+    }
+    let mut text = "\n## Declared properties\n\nThey depend on the parameters: the first row and each that differs from the rows above \
+                    it. `gonio brdf check` holds the model to them; a property that is declared to be missing is measured and printed.\n\n\
+                    | description | reciprocal | conserves energy | isotropic | albedo at most |\n|---|---|---|---|---|\n"
+        .to_owned();
+    let word = |holds: bool| if holds { "yes" } else { "not declared" };
+    for (name, d) in rows {
+        let bound = if d.albedo_bound.is_finite() {
+            format!("{:.4}", d.albedo_bound)
+        } else {
+            "no bound known".into()
+        };
+        text += &format!(
+            "| {name} | {} | {} | {} | {bound} |\n",
+            word(d.reciprocal),
+            word(d.energy_conserving),
+            word(d.isotropic)
+        );
+    }
+    text
+}
+
+fn commands(info: &ModelInfo) -> String {
+    let example = showcase().into_iter().find(|s| s.name == info.name);
+    let Some(example) = example.map(|s| s.to_string()) else {
+        return format!(
+            "\n## Try it\n\nGive a file: `{}:{}=…`, as in [Describing a model](../describing-a-model.md).\n",
+            info.name,
+            info.positional.unwrap_or("file")
+        );
+    };
+    // A shell takes parentheses and spaces for its own.
+    let example = if example.contains(['(', ' ']) {
+        format!("'{example}'")
+    } else {
+        example
+    };
+    format!(
+        "\n## Try it\n\n```sh\ngonio brdf check {example}\ngonio brdf eval {example} --wi 30,0 --wo 45,180\ngonio render --material \
+         {example}\n```\n"
+    )
+}
+
+/// Text for a cell of a table.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters
+        .next()
+        .map(|first| first.to_uppercase().chain(letters).collect())
+        .unwrap_or_default()
+}
