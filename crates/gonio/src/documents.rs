@@ -16,5 +16,6 @@ documents! {
     Reflection: "book/src/theory/brdf.md",
     ReflectionEquation: "book/src/theory/reflection-equation.md",
     Fresnel: "book/src/theory/fresnel.md",
+    Library: "book/src/library.md",
     Verification: "book/src/verification.md",
 }
