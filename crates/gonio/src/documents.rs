@@ -8,6 +8,8 @@ macro_rules! documents {
 
 documents! {
     Readme: "README.md",
+    ReadmeOfGonio: "crates/gonio/README.md",
+    ReadmeOfRender: "crates/gonio-render/README.md",
     Light: "book/src/theory/light.md",
     SolidAngle: "book/src/theory/solid-angle.md",
     SphericalCoordinates: "book/src/theory/spherical-coordinates.md",
