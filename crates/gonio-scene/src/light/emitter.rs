@@ -89,16 +89,20 @@ impl Emitter {
     /// A direction from `from` to a point of the emitter; nothing if the choice fell on one that is not to be seen.
     ///
     /// The emitter itself may lie in between: a shadow ray tells.
+    ///
+    /// Nothing if `from` lies in the plane of a rectangle, as far as its error lets one say. A point on the rectangle itself
+    /// may by rounding be on either side of it, and from just off its front the rectangle fills a hemisphere: its back
+    /// would seem lit by its front.
     pub fn sample(
         &self,
         geometry: &Geometry,
-        from: Vec3<f32>,
+        from: &SurfacePoint,
         u_select: f32,
         u: [f32; 2],
     ) -> Option<Seen> {
-        let eye = from.to_f64();
+        let eye = from.p.to_f64();
         let at = |wi: Vec3<f64>, t: f64, x: f64, y: f64| {
-            let ray = Ray::new(from, wi.to_f32());
+            let ray = Ray::new(from.p, wi.to_f32());
             let hit = Hit {
                 t: t as f32,
                 instance: self.instance,
@@ -130,6 +134,10 @@ impl Emitter {
                 edge_x,
                 edge_y,
             } => {
+                let height = (eye - *corner).dot(edge_x.cross(*edge_y).normalize());
+                if height.abs() <= f64::from(from.error) {
+                    return None;
+                }
                 let seen = SphericalRectangle::new(*corner, *edge_x, *edge_y, eye);
                 let p = seen.sample(u.map(f64::from));
                 let to = p - eye;

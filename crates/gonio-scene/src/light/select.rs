@@ -198,7 +198,7 @@ impl Lights {
                 }
             }
             (_, Some(emitter)) => {
-                let seen = emitter.sample(&self.geometry, from.p, u_select, u)?;
+                let seen = emitter.sample(&self.geometry, from, u_select, u)?;
                 LightSample {
                     wi: seen.wi,
                     target: LightTarget::Point(seen.point.p),

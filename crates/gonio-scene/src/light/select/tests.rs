@@ -214,6 +214,46 @@ fn a_one_sided_light_is_dark_from_behind() {
     assert!(s.wi.y < 0.0 && s.radiance == [1.0; 3]);
 }
 
+/// Points on the back of a rectangle that shines to the front, wherever their coordinates are rounded to: no light. The
+/// control: a point clear of the plane on the front's side sees it.
+#[test]
+fn a_rectangle_does_not_light_its_own_back() {
+    let mut rng = Rng::from_name("a_rectangle_does_not_light_its_own_back");
+    for turn in 0..50 {
+        let place = Vec3::new(rng.next_f32(), 0.99 + rng.next_f32(), rng.next_f32());
+        let to_world = Affine3::rotation(
+            Vec3::new(1.0, 0.0, 0.0),
+            if turn == 0 {
+                0.5 * PI as f32
+            } else {
+                6.0 * rng.next_f32()
+            },
+        )
+        .then(&Affine3::translation(place));
+        let scene = lamp(Shape::Rectangle, to_world, 1.0, false);
+        let normal = to_world.z;
+        for _ in 0..200 {
+            let along = to_world.x * (1.8 * rng.next_f32() - 0.9)
+                + to_world.y * (1.8 * rng.next_f32() - 0.9);
+            let back = Ray::new(place + along - normal, normal);
+            let point = scene.intersect(&back).unwrap();
+            let front = SurfacePoint {
+                p: place + along + normal * 0.01,
+                ..point.clone()
+            };
+            for _ in 0..10 {
+                let u = [rng.next_f32(), rng.next_f32()];
+                let select = rng.next_f32();
+                assert!(
+                    scene.lights.sample(&point, select, u).is_none(),
+                    "{point:?}"
+                );
+                assert!(scene.lights.sample(&front, select, u).is_some());
+            }
+        }
+    }
+}
+
 /// Lights of every kind around one point; nothing stands in front of anything.
 fn many() -> (Scene, f64) {
     let mut builder = SceneBuilder::new("many");
