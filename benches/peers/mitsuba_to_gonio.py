@@ -9,7 +9,8 @@ Differences between the two renderers that this has to bridge:
   `adapted` wraps every material of a dictionary, so that both render the same.
 - Mitsuba's panorama starts at -z and goes round to +x; its rows are nodes from pole to pole (row j at θ = jπ/(H - 1)). Gonio's centre
   column is -z, and rows lie at texel centres (θ = (j + ½)π/H). So the panorama is turned by half a circle and its rows are
-  resampled, `ROWS` times as many, which leaves an error of the order of the panorama's second derivative over 8·ROWS².
+  resampled to 2 `FINER` (H - 1) + 1 rows: for even H this puts rows, to a thousandth of their distance, where Mitsuba has its two
+  rows on both sides of the horizon, at whose edge the radiance usually jumps.
 - Mitsuba's masking is Smith's, separable, without light that facets pass on: `masking = "smith"`, `interreflection = "off"`.
 - Shapes that name no material are `diffuse` of 0.5, or black if they are lights.
 """
@@ -19,7 +20,7 @@ import copy
 import mitsuba as mi
 import numpy as np
 
-ROWS = 8
+FINER = 4
 
 # The cube's faces as rectangles: columns are the images of x, y, z and the centre; the normal points out.
 _FACES = [
@@ -125,7 +126,8 @@ def write_panorama(source, path):
     """Writes Mitsuba's panorama with rows where Gonio has them."""
     image = np.array(mi.Bitmap(source).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False), dtype=np.float64)
     height = image.shape[0]
-    at = (np.arange(ROWS * height) + 0.5) / (ROWS * height) * (height - 1)
+    finer = 2 * FINER * (height - 1) + 1
+    at = (np.arange(finer) + 0.5) / finer * (height - 1)
     below = np.minimum(at.astype(int), height - 2)
     t = (at - below)[:, None, None]
     rows = (1 - t) * image[below] + t * image[below + 1]

@@ -51,17 +51,19 @@ pub(super) fn shape(
     path: &Path,
     options: &LoadOptions,
 ) -> Result<u32, SceneError> {
+    let kind = extension(path);
+    if !matches!(kind.as_str(), "obj" | "ply") {
+        return Err(SceneError::Unsupported {
+            path: path.to_owned(),
+            what: format!("a mesh with the extension `{kind}`"),
+            help: "meshes are .obj or .ply; a glTF file is a shape of kind \"gltf\"".into(),
+        });
+    }
     let bytes = options.files.read(path, options.max_bytes)?;
-    let mesh = match extension(path).as_str() {
-        "obj" => obj::parse(&bytes, path)?.merged(),
-        "ply" => ply::parse(&bytes, path)?,
-        other => {
-            return Err(SceneError::Unsupported {
-                path: path.to_owned(),
-                what: format!("a mesh with the extension `{other}`"),
-                help: "meshes are .obj or .ply; a glTF file is a shape of kind \"gltf\"".into(),
-            });
-        }
+    let mesh = if kind == "obj" {
+        obj::parse(&bytes, path)?.merged()
+    } else {
+        ply::parse(&bytes, path)?
     };
     Ok(builder.shape(Shape::Mesh(Arc::new(mesh))))
 }
