@@ -8,7 +8,7 @@ fn folder() -> PathBuf {
 }
 
 fn example(name: &str) -> Scene {
-    Scene::load(&folder().join(name), &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
+    Scene::load(folder().join(name), &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn the_boxes_of_the_cornell_box_are_closed() {
 fn what_is_no_example_is_refused() {
     let options = LoadOptions::default();
     assert!(matches!(
-        Scene::load(&folder().join("no-such.toml"), &options),
+        Scene::load(folder().join("no-such.toml"), &options),
         Err(SceneError::Io { .. })
     ));
     let folder = tempfile::tempdir().unwrap();

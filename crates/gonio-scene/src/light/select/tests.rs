@@ -239,7 +239,7 @@ fn a_rectangle_does_not_light_its_own_back() {
             let point = scene.intersect(&back).unwrap();
             let front = SurfacePoint {
                 p: place + along + normal * 0.01,
-                ..point.clone()
+                ..point
             };
             for _ in 0..10 {
                 let u = [rng.next_f32(), rng.next_f32()];
