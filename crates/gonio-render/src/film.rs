@@ -142,7 +142,7 @@ impl Film {
             });
         }
         let count = u64::from(width) * u64::from(height);
-        let bytes = count * size_of::<PixelSums>() as u64;
+        let bytes = count.saturating_mul(size_of::<PixelSums>() as u64);
         // A pixel's index is a 32-bit number in the sample sequences.
         if bytes > LIMIT_BYTES || count > u64::from(u32::MAX) {
             return Err(RenderError::Limit {

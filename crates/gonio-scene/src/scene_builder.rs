@@ -157,6 +157,15 @@ impl SceneBuilder {
             .iter()
             .any(|i| !self.materials[i.material as usize].opacity.is_opaque());
         let geometry = Arc::new(Geometry::build(self.shapes, self.instances)?);
+        match geometry.degenerate_count() {
+            0 => {}
+            1 => self
+                .warnings
+                .push("one degenerate triangle, without area, is left out".into()),
+            n => self.warnings.push(format!(
+                "{n} degenerate triangles, without area, are left out"
+            )),
+        }
         let lights = Lights::new(
             geometry.clone(),
             &self.materials,

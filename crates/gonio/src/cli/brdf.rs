@@ -172,23 +172,19 @@ const COLUMNS: usize = 80;
 
 /// `text` in lines of at most 80 columns, broken at spaces; the second and later ones are indented.
 fn wrapped(text: &str, indent: usize) -> String {
-    let mut lines = String::new();
-    let mut column = 0;
-    for word in text.split(' ') {
+    let start = text.len() - text.trim_start().len();
+    let mut lines = text[..start].to_owned();
+    let mut column = start;
+    for (i, word) in text[start..].split(' ').enumerate() {
         let length = word.chars().count();
-        if column > indent && column + 1 + length > COLUMNS {
+        if i > 0 && column > indent && column + 1 + length > COLUMNS {
             lines.truncate(lines.trim_end().len());
             lines += "\n";
             lines += &" ".repeat(indent);
             column = indent;
-        } else if !lines.is_empty() {
+        } else if i > 0 {
             lines.push(' ');
             column += 1;
-        } else if length == 0 {
-            // Text that begins with spaces keeps them.
-            lines.push(' ');
-            column = 1;
-            continue;
         }
         lines += word;
         column += length;
@@ -286,28 +282,56 @@ fn check(text: &str, effort: Effort, json: bool) -> Result<(), Failure> {
     if json {
         print_json(&reports)?;
     }
+    judged(&reports)?;
+    if !json && reports.len() > 1 {
+        print(&format!("{} reflection functions passed", reports.len()))?;
+    }
+    Ok(())
+}
+
+/// Fails if a report says that its subject is not as declared.
+fn judged(reports: &[Report]) -> Result<(), Failure> {
     let failed: Vec<&str> = reports
         .iter()
         .filter(|r| !r.passed())
         .map(|r| r.subject.as_str())
         .collect();
     if failed.is_empty() {
-        if !json && reports.len() > 1 {
-            print(&format!("{} reflection functions passed", reports.len()))?;
-        }
-        Ok(())
-    } else {
-        Err(
-            Failure::verification(format!("not as declared: {}", failed.join(", "))).with_help(
-                "each property that failed is shown above with the directions it is worst for",
-            ),
-        )
+        return Ok(());
     }
+    Err(
+        Failure::verification(format!("not as declared: {}", failed.join(", "))).with_help(
+            "each property that failed is shown above with the directions it is worst for",
+        ),
+    )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use gonio_num::Vec3;
+    use gonio_verify::{Expectation, Subject};
+
+    /// No model of the registry is other than it declares, so a closure is: a diffuse surface of albedo 2.
+    #[test]
+    fn a_verdict_that_fails_exits_with_1() {
+        let report = |albedo: f64| {
+            let eval = |wi: Vec3<f64>, wo: Vec3<f64>| match wi.z > 0.0 && wo.z > 0.0 {
+                true => [albedo / std::f64::consts::PI; 3],
+                false => [0.0; 3],
+            };
+            let subject = Subject::new("diffuse", &eval);
+            gonio_verify::check(
+                &subject,
+                &Expectation::default(),
+                Effort::Quick,
+                "exit code",
+            )
+        };
+        assert_eq!(judged(&[report(0.5)]), Ok(()));
+        let failure = judged(&[report(0.5), report(2.0)]).unwrap_err();
+        assert_eq!(failure.code(), 1);
+    }
 
     #[test]
     fn long_lines_are_broken_at_spaces() {

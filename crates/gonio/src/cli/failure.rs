@@ -91,6 +91,13 @@ impl From<SceneError> for Failure {
             SceneError::Description { .. } => {
                 Self::input(message).with_help(help.unwrap_or("correct this line".into()))
             }
+            SceneError::Unsupported { path, .. } if !path.exists() => {
+                let near = nearest_file(&path).map(|near| did_you_mean(&near));
+                Self {
+                    help: near.or(help),
+                    ..Self::input(message)
+                }
+            }
             SceneError::Limit { .. } => Self::input(message)
                 .with_help("the file is damaged, or has to be divided into smaller ones"),
             SceneError::Format { .. } | SceneError::Mesh { .. } => {

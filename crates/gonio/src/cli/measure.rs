@@ -3,6 +3,7 @@
 use super::environment::EnvironmentArguments;
 use super::failure::Failure;
 use super::parse;
+use super::render::load_scene;
 use super::terminal::{print, print_json, significant, warn};
 use gonio_env::Environment;
 use gonio_num::Vec3;
@@ -121,7 +122,7 @@ impl Source {
     fn scene(&self) -> Result<Scene, Failure> {
         let scene = match &self.scene {
             Some(path) => {
-                let mut scene = Scene::load(path, &LoadOptions::default())?;
+                let mut scene = load_scene(path, &LoadOptions::default())?;
                 self.environment.apply(&mut scene)?;
                 scene
             }

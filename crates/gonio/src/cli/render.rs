@@ -12,7 +12,7 @@ use gonio_image::tonemap::ToneMap;
 use gonio_radiometry::sequence::SamplerKind;
 use gonio_render::integrator::{Direct, Path as PathTracer};
 use gonio_render::{Film, Integrator, PixelFilter, Progress, RenderOptions, Stop, Target};
-use gonio_scene::{Camera, LoadOptions, Scene};
+use gonio_scene::{Camera, LoadOptions, Scene, SceneError};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -90,7 +90,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "S", default_value_t = 0, value_parser = parse::whole(0, u64::MAX), allow_hyphen_values = true, help_heading = "Method")]
     seed: u64,
     /// Threads [default: one a processor]; the picture does not depend on it
-    #[arg(long, value_name = "N", value_parser = parse::whole(1, 4096), allow_hyphen_values = true, help_heading = "Method")]
+    #[arg(long, value_name = "N", value_parser = parse::whole(1_usize, 4096), allow_hyphen_values = true, help_heading = "Method")]
     threads: Option<usize>,
 }
 
@@ -209,7 +209,7 @@ fn scene(arguments: &Arguments) -> Result<(Scene, Vec<String>), Failure> {
         ..LoadOptions::default()
     };
     let mut scene = match &arguments.scene {
-        Some(path) => Scene::load(path, &load)?,
+        Some(path) => load_scene(path, &load)?,
         None => preview::load(load)?,
     };
     for text in &arguments.material {
@@ -228,6 +228,14 @@ fn scene(arguments: &Arguments) -> Result<(Scene, Vec<String>), Failure> {
         notes.push("the scene has no camera: it is seen from where all of it is in view".into());
     }
     Ok((scene, notes))
+}
+
+/// Reads a scene; one without content is named by its file.
+pub(super) fn load_scene(path: &Path, options: &LoadOptions) -> Result<Scene, Failure> {
+    Scene::load(path, options).map_err(|e| match e {
+        SceneError::Empty { .. } => Failure::from(e).about(&path.display().to_string()),
+        other => other.into(),
+    })
 }
 
 /// Follows one `--material`.

@@ -54,7 +54,8 @@ fn help(error: &clap::Error, command: &Command, words: &[String]) -> String {
     .into_iter()
     .find_map(|kind| match error.get(kind) {
         Some(ContextValue::String(s)) => Some(s.clone()),
-        Some(ContextValue::Strings(s)) => s.first().cloned(),
+        // The likeliest comes last.
+        Some(ContextValue::Strings(s)) => s.last().cloned(),
         _ => None,
     });
     if error.kind() == ErrorKind::InvalidSubcommand

@@ -1,0 +1,164 @@
+//! `gonio brdf`.
+
+use crate::support::Place;
+
+#[test]
+fn the_list_names_every_model() {
+    let place = Place::new();
+    let list = place.good(&["brdf", "list"]).out;
+    let json = place.json(&["brdf", "list", "--json"]);
+    let models = json.as_array().unwrap();
+    assert!(models.len() >= 10);
+    for model in models {
+        let name = model["name"].as_str().unwrap();
+        assert!(list.lines().any(|line| line.starts_with(name)), "{name}");
+        for key in ["summary", "paper", "aliases", "parameters", "declares"] {
+            assert!(!model[key].is_null() || name == "table", "{name} {key}");
+        }
+    }
+}
+
+#[test]
+fn each_model_can_be_shown_in_eighty_columns() {
+    let place = Place::new();
+    for name in gonio::brdf::registry::names() {
+        let text = place.good(&["brdf", "show", name]).out;
+        assert!(text.starts_with(&format!("{name}: ")), "{text}");
+        assert!(text.contains("Source: "), "{text}");
+        for line in text.lines() {
+            // One word may be longer: a command to copy.
+            assert!(
+                line.chars().count() <= 80 || line.starts_with("Check it"),
+                "{line}"
+            );
+        }
+        assert_eq!(place.json(&["brdf", "show", name, "--json"])["name"], name);
+    }
+    let text = place.good(&["brdf", "show", "ggx:roughness=0.25"]).out;
+    assert!(
+        text.contains("here 0.25") && text.contains("default 0.04"),
+        "{text}"
+    );
+}
+
+#[test]
+fn values_for_a_pair_of_directions() {
+    let place = Place::new();
+    let half = "lambertian:reflectance=0.5";
+    let text = place
+        .good(&["brdf", "eval", half, "--wi", "0,0", "--wo", "0,0"])
+        .out;
+    assert!(text.contains("f            0.1591549 sr⁻¹"), "{text}");
+    let value = |spec: &str, wi: &str, wo: &str, key: &str| {
+        let json = place.json(&["brdf", "eval", spec, "--wi", wi, "--wo", wo, "--json"]);
+        json[key]
+            .as_array()
+            .map_or(json[key].as_f64(), |rgb| rgb[0].as_f64())
+            .unwrap()
+    };
+    let pi = std::f64::consts::PI;
+    assert!((value(half, "60,0", "0", "f_per_sr") - 0.5 / pi).abs() < 1e-12);
+    assert!((value(half, "60,0", "0", "f_cos_per_sr") - 0.25 / pi).abs() < 1e-12);
+    assert!((value(half, "60,0", "0", "pdf_per_sr") - 0.5 / pi).abs() < 1e-12);
+    // Below the horizon there is no reflection.
+    assert_eq!(value(half, "120,0", "0", "f_per_sr"), 0.0);
+    // A mirror's light is all in a Dirac delta.
+    assert_eq!(value("mirror", "30,0", "30,180", "f_per_sr"), 0.0);
+    assert!(
+        place
+            .good(&["brdf", "eval", "mirror", "--wi", "30,0", "--wo", "30,180"])
+            .out
+            .contains("Dirac")
+    );
+    // Gold is not grey.
+    let gold = place
+        .good(&[
+            "brdf",
+            "eval",
+            "ggx:metal=gold",
+            "--wi",
+            "45,0",
+            "--wo",
+            "45,180",
+        ])
+        .out;
+    assert!(gold.contains("(red, green, blue)"), "{gold}");
+}
+
+#[test]
+fn every_model_is_as_it_declares() {
+    let place = Place::new();
+    let reports = place.json(&["brdf", "check", "all", "--effort", "quick", "--json"]);
+    let reports = reports.as_array().unwrap();
+    assert!(reports.len() >= 20);
+    let mut declared = 0;
+    for report in reports {
+        for verdict in report["verdicts"].as_array().unwrap() {
+            assert_ne!(verdict["outcome"], "fail", "{}", report["subject"]);
+            declared += usize::from(verdict["outcome"] == "declared");
+        }
+    }
+    // Toon is not physical, and says so.
+    assert!(declared > 0);
+    let one = place
+        .good(&["brdf", "check", "toon", "--effort", "quick"])
+        .out;
+    assert!(one.contains("! declared") && one.contains("PASS"), "{one}");
+}
+
+/// Tables are what was measured: they may reflect more than they receive, and the check says by how much.
+#[test]
+fn tables_are_checked_as_they_are() {
+    let place = Place::new();
+    let spec = format!(
+        "table:file={}",
+        place.write("bright.binary", bright_table())
+    );
+    let report = place
+        .good(&["brdf", "check", &spec, "--effort", "quick"])
+        .out;
+    let energy = report.lines().find(|l| l.contains("energy")).unwrap();
+    assert!(
+        energy.contains("! declared") && energy.contains("31.41"),
+        "{energy}"
+    );
+}
+
+/// A MERL table of a surface that reflects more than it receives: 90 × 90 × 180 values of 10 sr⁻¹ in each channel.
+fn bright_table() -> Vec<u8> {
+    let dimensions = [90_i32, 90, 180];
+    let count = dimensions.iter().map(|d| *d as usize).product::<usize>();
+    let scales = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
+    let mut file: Vec<u8> = dimensions.iter().flat_map(|d| d.to_le_bytes()).collect();
+    for scale in scales {
+        for _ in 0..count {
+            file.extend((10.0_f64 / scale).to_le_bytes());
+        }
+    }
+    file
+}
+
+#[test]
+fn damaged_tables_are_refused() {
+    let place = Place::new();
+    let sound = bright_table();
+    for (name, bytes) in [
+        ("empty", vec![]),
+        ("short", sound[..1000].to_vec()),
+        ("huge", [i32::MAX.to_le_bytes(); 3].concat()),
+        ("negative", [(-90_i32).to_le_bytes(); 3].concat()),
+    ] {
+        let file = place.write(&format!("{name}.binary"), bytes);
+        place.bad(
+            &["brdf", "check", &format!("table:file={file}")],
+            3,
+            &[&file],
+        );
+    }
+    place.bad(
+        &["brdf", "check", "table:file=nowhere.binary"],
+        3,
+        &["nowhere.binary"],
+    );
+    place.bad(&["brdf", "check", "table"], 2, &["file"]);
+}

@@ -1,0 +1,15 @@
+//! The `gonio` command, run as a user runs it.
+
+#![allow(clippy::unwrap_used)]
+
+mod arguments;
+mod brdf;
+mod damaged;
+mod diff;
+mod environment;
+mod interrupt;
+mod measure;
+mod render;
+mod scenes;
+mod support;
+mod writing;
