@@ -14,6 +14,7 @@ mod measure;
 mod parse;
 mod progress;
 mod render;
+mod summary;
 mod terminal;
 mod usage;
 

@@ -5,6 +5,7 @@ use super::environment::EnvironmentArguments;
 use super::failure::Failure;
 use super::parse;
 use super::progress::{self, Bar};
+use super::summary::Summary;
 use super::terminal::{note, print, print_json, warn};
 use crate::preview;
 use gonio_brdf::ModelSpec;
@@ -106,23 +107,6 @@ enum SamplerName {
     Independent,
 }
 
-/// What a rendering did, for people and for programs.
-#[derive(serde::Serialize)]
-struct Summary<'a> {
-    outputs: &'a [&'a PathBuf],
-    width: u32,
-    height: u32,
-    samples_per_pixel: u32,
-    seconds: f64,
-    rays: u64,
-    noise: Option<f64>,
-    stopped_by: Stop,
-    seed: u64,
-    rejected_samples: &'a gonio_render::Rejected,
-    warnings: &'a [String],
-    notes: &'a [String],
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let outputs = outputs(arguments)?;
     let (scene, notes) = scene(arguments)?;
@@ -169,10 +153,28 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         .iter()
         .map(|path| write(arguments, &options, &film, path).map(|()| path))
         .partition(Result::is_ok);
-    let written: Vec<&PathBuf> = written.into_iter().flatten().collect();
-    report(
-        arguments, &options, &scene, &film, &written, &progress, stop, &notes,
-    )?;
+    let summary = Summary {
+        outputs: written.into_iter().flatten().collect(),
+        width: options.width,
+        height: options.height,
+        samples_per_pixel: progress.samples,
+        seconds: progress.elapsed.as_secs_f64(),
+        rays: progress.rays.total(),
+        noise: Some(progress.noise).filter(|n| n.is_finite()),
+        stopped_by: stop,
+        seed: options.seed,
+        rejected_samples: film.rejected(),
+        warnings: &scene.warnings,
+        notes: &notes,
+    };
+    if let Some(text) = summary.rejected(&scene) {
+        warn(&text);
+    }
+    if arguments.json {
+        print_json(&summary)?;
+    } else if !arguments.quiet {
+        print(&summary.in_words())?;
+    }
     if let Some(failure) = failures.into_iter().find_map(Result::err) {
         return Err(failure);
     }
@@ -217,7 +219,7 @@ fn scene(arguments: &Arguments) -> Result<(Scene, Vec<String>), Failure> {
             .map_err(|failure| failure.about(&format!("--material '{text}'")))?;
     }
     arguments.environment.apply(&mut scene)?;
-    if scene.lights.len() == 0 {
+    if scene.lights.iter().next().is_none() {
         let panorama = preview::panorama()?;
         scene.set_environment(Some(arguments.environment.turned(panorama)));
         notes.push(
@@ -343,62 +345,4 @@ fn metadata(arguments: &Arguments, options: &RenderOptions, film: &Film) -> Vec<
     ]
     .map(|(key, value)| (key.to_owned(), value))
     .into()
-}
-
-fn report(
-    arguments: &Arguments,
-    options: &RenderOptions,
-    scene: &Scene,
-    film: &Film,
-    outputs: &[&PathBuf],
-    progress: &Progress,
-    stop: Stop,
-    notes: &[String],
-) -> Result<(), Failure> {
-    let rejected = film.rejected();
-    if let Some(first) = &rejected.first {
-        let material = first
-            .material
-            .and_then(|m| scene.materials.get(m as usize))
-            .map_or("no surface", |m| m.name.as_str());
-        warn(&format!(
-            "{} samples were negative or not finite and count as black; the first: pixel {}, {}, sample {}, \
-             material '{material}', radiance {:?}",
-            rejected.count, first.pixel[0], first.pixel[1], first.sample, first.radiance
-        ));
-    }
-    if arguments.json {
-        return print_json(&Summary {
-            outputs,
-            width: options.width,
-            height: options.height,
-            samples_per_pixel: progress.samples,
-            seconds: progress.elapsed.as_secs_f64(),
-            rays: progress.rays.total(),
-            noise: Some(progress.noise).filter(|n| n.is_finite()),
-            stopped_by: stop,
-            seed: options.seed,
-            rejected_samples: rejected,
-            warnings: &scene.warnings,
-            notes,
-        });
-    }
-    if arguments.quiet {
-        return Ok(());
-    }
-    let seconds = progress.elapsed.as_secs_f64();
-    print(&format!(
-        "{}×{} pixels, {} sample{} each, {} rays in {seconds:.1} s ({} rays/s), noise {}",
-        options.width,
-        options.height,
-        progress.samples,
-        if progress.samples == 1 { "" } else { "s" },
-        progress::quantity(progress.rays.total() as f64),
-        progress::quantity(progress.rays.total() as f64 / seconds.max(1e-9)),
-        progress::percent(progress.noise),
-    ))?;
-    for path in outputs {
-        print(&format!("wrote {}", path.display()))?;
-    }
-    Ok(())
 }

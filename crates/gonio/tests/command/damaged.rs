@@ -3,7 +3,7 @@
 use crate::support::{CORNERS, Place, glb, panorama, ply, tiny, triangle};
 
 /// The command that reads a file of this extension.
-fn reader<'a>(file: &'a str) -> Vec<Vec<&'a str>> {
+fn reader(file: &str) -> Vec<Vec<&str>> {
     match file.rsplit('.').next().unwrap() {
         "hdr" | "exr" | "png" | "jpg" => vec![
             vec!["env", "info", file],

@@ -4,7 +4,7 @@ use crate::support::{BALL, Place, said, tiny};
 use std::time::{Duration, Instant};
 
 /// A rendering of an hour, were it not refused at once.
-fn long<'a>(output: &'a str) -> [&'a str; 5] {
+fn long(output: &str) -> [&str; 5] {
     ["render", "--time", "1h", "-o", output]
 }
 

@@ -1,0 +1,63 @@
+//! What a rendering did, for people and for programs.
+
+use super::progress::{percent, quantity};
+use gonio_render::{Rejected, Stop};
+use gonio_scene::Scene;
+use std::path::PathBuf;
+
+/// What a rendering did. Its names are those of the JSON.
+#[derive(serde::Serialize)]
+pub(super) struct Summary<'a> {
+    pub outputs: Vec<&'a PathBuf>,
+    pub width: u32,
+    pub height: u32,
+    pub samples_per_pixel: u32,
+    pub seconds: f64,
+    pub rays: u64,
+    /// None before there are samples enough for an estimate.
+    pub noise: Option<f64>,
+    pub stopped_by: Stop,
+    pub seed: u64,
+    pub rejected_samples: &'a Rejected,
+    pub warnings: &'a [String],
+    pub notes: &'a [String],
+}
+
+impl Summary<'_> {
+    /// The warning of samples that could not enter the picture, with the place of the first.
+    pub fn rejected(&self, scene: &Scene) -> Option<String> {
+        let first = self.rejected_samples.first.as_ref()?;
+        let material = first
+            .material
+            .and_then(|m| scene.materials.get(m as usize))
+            .map_or("no surface", |m| m.name.as_str());
+        Some(format!(
+            "{} samples were negative or not finite and count as black; the first: pixel {}, {}, sample {}, material \
+             '{material}', radiance {:?}",
+            self.rejected_samples.count,
+            first.pixel[0],
+            first.pixel[1],
+            first.sample,
+            first.radiance
+        ))
+    }
+
+    /// The lines that end a rendering.
+    pub fn in_words(&self) -> String {
+        let mut text = format!(
+            "{}×{} pixels, {} sample{} each, {} rays in {:.1} s ({} rays/s), noise {}\n",
+            self.width,
+            self.height,
+            self.samples_per_pixel,
+            if self.samples_per_pixel == 1 { "" } else { "s" },
+            quantity(self.rays as f64),
+            self.seconds,
+            quantity(self.rays as f64 / self.seconds.max(1e-9)),
+            percent(self.noise.unwrap_or(f64::INFINITY)),
+        );
+        for path in &self.outputs {
+            text += &format!("wrote {}\n", path.display());
+        }
+        text
+    }
+}
