@@ -15,6 +15,79 @@
 //! | [`scene`] | shapes, materials, lights, cameras, and readers |
 //! | [`render`] | the reflection equation solved over a scene; radiometric sensors |
 //! | [`preview`] | the embedded scene that `gonio render` shows without a file |
+//!
+//! # radiometry
+//! Quantities are types: radiance times projected solid angle is irradiance, and a wrong product does not compile.
+//! ```
+//! use gonio::radiometry::quantity::*;
+//! let e: Irradiance = Radiance::new(1.0) * ProjectedSolidAngle::hemisphere();
+//! assert_eq!(e.value(), std::f64::consts::PI); // W/m²
+//! ```
+//!
+//! # brdf
+//! A model by its description, in any number type; f is in sr⁻¹, without the cosine.
+//! ```
+//! use gonio::brdf::{Brdf, Model, ModelSpec};
+//! use gonio::num::Vec3;
+//! let model: Model<f64, 3> = ModelSpec::parse("lambertian:reflectance=0.5")?.build()?;
+//! let up = Vec3::new(0.0, 0.0, 1.0);
+//! assert_eq!(model.eval(up, up)[0], 0.5 / std::f64::consts::PI);
+//! # Ok::<(), gonio::brdf::BrdfError>(())
+//! ```
+//!
+//! # verify
+//! Anybody's function as a closure; the report says what fails, by how much, and where.
+//! ```
+//! use gonio::num::Vec3;
+//! use gonio::verify::{Effort, Expectation, Subject, check};
+//! // Brighter towards the viewer's own direction: swapping wi and wo gives another value.
+//! let lopsided = |wi: Vec3<f64>, wo: Vec3<f64>| match wi.z > 0.0 && wo.z > 0.0 {
+//!     true => [0.2 * wo.z; 3],
+//!     false => [0.0; 3],
+//! };
+//! let subject = Subject::new("lopsided", &lopsided);
+//! let report = check(&subject, &Expectation::PHYSICAL, Effort::Quick, "rustdoc");
+//! let failed: Vec<String> = report.failures().map(|v| v.property.to_string()).collect();
+//! assert_eq!(failed, ["reciprocity"]);
+//! ```
+//!
+//! # env
+//! Light from infinitely far away.
+//! ```
+//! use gonio::env::Environment;
+//! use gonio::num::Vec3;
+//! let sky = Environment::uniform([1.0, 2.0, 3.0]);
+//! let [r, _, b] = sky.irradiance(Vec3::new(0.0, 1.0, 0.0));
+//! assert!((r - std::f64::consts::PI).abs() < 1e-12 && (b - 3.0 * r).abs() < 1e-12);
+//! ```
+//!
+//! # scene and render
+//! A ball under that sky, and a picture of it: it shows its albedo.
+//! ```
+//! use gonio::brdf::ModelSpec;
+//! use gonio::env::Environment;
+//! use gonio::num::Affine3;
+//! use gonio::render::{RenderOptions, render};
+//! use gonio::scene::{Material, SceneBuilder, Shape};
+//! use std::ops::ControlFlow;
+//!
+//! let mut builder = SceneBuilder::new("ball");
+//! let paint = ModelSpec::parse("lambertian:reflectance=0.5")?;
+//! let material = builder.material(Material::new("paint", &paint)?);
+//! let sphere = builder.shape(Shape::Sphere);
+//! builder.instance(sphere, Affine3::identity(), material);
+//! builder.environment(Environment::uniform([1.0; 3]));
+//! let scene = builder.build()?;
+//!
+//! let options = RenderOptions { width: 32, height: 32, ..RenderOptions::default() };
+//! let camera = scene.camera_or_framing(1.0);
+//! let (film, _) = render(&scene, &camera, &options, |_, _| ControlFlow::Continue(()))?;
+//! let centre = film.image().get(16, 16);
+//! assert!((centre[0] - 0.5).abs() < 0.05);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Longer ones are in the crate's `examples` folder.
 
 pub use gonio_brdf as brdf;
 pub use gonio_env as env;
