@@ -85,9 +85,12 @@ pub enum Stop {
     Interrupted,
 }
 
-/// Samples of every pixel in one pass, the unit between two looks at the targets. Passes double from 1, so that a first
+/// Samples of every pixel in one pass, the unit between two looks at the noise. Passes double from 1, so that a first
 /// picture is there at once, up to this many.
 const LARGEST_PASS: u32 = 16;
+/// A pass that takes longer than this is done in pieces, with a look at the clock and at the user's wishes after each. The
+/// noise is judged after whole passes alone: where it ends a rendering does not depend on the machine's speed.
+const LONGEST_PIECE: Duration = Duration::from_secs(1);
 /// Stopping by noise needs this many samples before it trusts its own estimate.
 const LEAST_SAMPLES_FOR_NOISE: u32 = 16;
 
@@ -127,13 +130,22 @@ pub fn render(
     let mut film = Film::new(options.width, options.height)?;
     let start = Instant::now();
     let mut rays = RayCounts::default();
-    let mut done = 0;
-    let mut pass = 1;
+    let mut done = 0_u32;
+    let mut pass = 1_u32;
+    let mut pass_ends = pass;
+    let mut piece = 1;
     loop {
-        let until = (done + pass).min(target.samples);
+        let until = done
+            .saturating_add(piece)
+            .min(pass_ends)
+            .min(target.samples);
         rays += take_pass(scene, camera, options, &mut film, done..until);
         done = until;
-        pass = (pass * 2).min(LARGEST_PASS);
+        let pass_is_whole = done == pass_ends;
+        if pass_is_whole {
+            pass = (pass * 2).min(LARGEST_PASS);
+            pass_ends = pass_ends.saturating_add(pass);
+        }
 
         let report = Progress {
             samples: done,
@@ -143,7 +155,7 @@ pub fn render(
             noise: film.noise(),
         };
         let asked = progress(&report, &film);
-        let quiet = target.noise.is_some_and(|n| report.noise <= n);
+        let quiet = pass_is_whole && target.noise.is_some_and(|n| report.noise <= n);
         let stop = if done == target.samples {
             Stop::Samples
         } else if asked.is_break() {
@@ -153,10 +165,19 @@ pub fn render(
         } else if target.time.is_some_and(|t| report.elapsed >= t) {
             Stop::Time
         } else {
+            let left = target.time.map(|t| t.saturating_sub(report.elapsed));
+            piece = samples_within(left.unwrap_or(LONGEST_PIECE), done, report.elapsed);
             continue;
         };
         return Ok((film, stop));
     }
+}
+
+/// Samples that fit into `left`, and into the longest piece, at the pace of `done` samples in `elapsed`; at least one.
+fn samples_within(left: Duration, done: u32, elapsed: Duration) -> u32 {
+    let seconds = left.min(LONGEST_PIECE).as_secs_f64();
+    // A conversion to an integer saturates, for a pace that is too fast to measure as well.
+    ((seconds * f64::from(done) / elapsed.as_secs_f64()) as u32).max(1)
 }
 
 /// Adds the samples `range` to every pixel.
@@ -214,4 +235,21 @@ fn take_sample(
     options
         .integrator
         .radiance(scene, &ray, &mut stream, counts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_fit_the_time_that_is_left() {
+        let seconds = Duration::from_secs_f64;
+        // A hundred samples a second: one second at most.
+        assert_eq!(samples_within(seconds(60.0), 200, seconds(2.0)), 100);
+        assert_eq!(samples_within(seconds(0.25), 200, seconds(2.0)), 25);
+        // Slower than that, and out of time: one.
+        assert_eq!(samples_within(seconds(60.0), 1, seconds(9.0)), 1);
+        assert_eq!(samples_within(seconds(0.0), 200, seconds(2.0)), 1);
+        assert_eq!(samples_within(seconds(60.0), 1, seconds(0.0)), u32::MAX);
+    }
 }
