@@ -37,6 +37,8 @@ pub struct LoadOptions {
     pub scene: Option<usize>,
     /// The name or the index of the camera that becomes the first one.
     pub camera: Option<String>,
+    /// Whether NaN, infinite and negative texels of the environment are replaced and counted, instead of refused.
+    pub sanitize: bool,
     /// Where files are read from.
     pub files: Files,
     /// Bytes that a file, and all buffers of a file together, may have.
@@ -52,6 +54,7 @@ impl Default for LoadOptions {
         Self {
             scene: None,
             camera: None,
+            sanitize: false,
             files: Files::Disk,
             max_bytes: 4 << 30,
             max_texture_pixels: 1 << 28,

@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::parse;
 use gonio_env::{Environment, Layout};
-use gonio_scene::Scene;
+use gonio_scene::{LoadOptions, Scene};
 
 /// Which light comes from infinitely far away.
 #[derive(clap::Args)]
@@ -25,6 +25,14 @@ impl EnvironmentArguments {
             return Ok(None);
         };
         Ok(Some(self.turned(self.reading.parse(text)?)))
+    }
+
+    /// How a scene's own environment is read.
+    pub fn for_scene(&self) -> LoadOptions {
+        LoadOptions {
+            sanitize: self.reading.env_sanitize,
+            ..LoadOptions::default()
+        }
     }
 
     /// Puts the environment that was asked for into the scene, or turns the scene's own.

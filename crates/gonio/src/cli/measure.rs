@@ -10,7 +10,7 @@ use gonio_num::Vec3;
 use gonio_render::Integrator;
 use gonio_render::integrator::{Direct, Path as PathTracer};
 use gonio_render::sensor::{self, Parallelogram, Reading, SensorOptions};
-use gonio_scene::{LoadOptions, Ray, Scene, SceneBuilder};
+use gonio_scene::{Ray, Scene, SceneBuilder};
 use std::path::PathBuf;
 
 #[derive(clap::Subcommand)]
@@ -122,7 +122,7 @@ impl Source {
     fn scene(&self) -> Result<Scene, Failure> {
         let scene = match &self.scene {
             Some(path) => {
-                let mut scene = load_scene(path, &LoadOptions::default())?;
+                let mut scene = load_scene(path, &self.environment.for_scene())?;
                 self.environment.apply(&mut scene)?;
                 scene
             }

@@ -208,7 +208,7 @@ fn scene(arguments: &Arguments) -> Result<(Scene, Vec<String>), Failure> {
     let mut notes = Vec::new();
     let load = LoadOptions {
         camera: arguments.camera.clone(),
-        ..LoadOptions::default()
+        ..arguments.environment.for_scene()
     };
     let mut scene = match &arguments.scene {
         Some(path) => load_scene(path, &load)?,

@@ -1,6 +1,6 @@
 //! `gonio env info`.
 
-use crate::support::{Place, panorama};
+use crate::support::{BALL, Place, panorama, tiny};
 
 #[test]
 fn a_panorama_is_described() {
@@ -43,6 +43,10 @@ fn nan_and_infinite_texels_are_named_and_can_be_replaced() {
             ["non_finite_replaced", "negative_replaced"].map(|k| info[k].as_u64().unwrap());
         assert_eq!(replaced.iter().sum::<u64>(), 1, "{name}: {replaced:?}");
         place.good(&["measure", "irradiance", "--env", name, "--env-sanitize"]);
+        let own = BALL.replace("uniform = 1.0", &format!("file = \"{name}\""));
+        let scene = place.write("own.toml", own);
+        place.bad(&["render", &scene], 3, &words);
+        place.good(&tiny(&[&scene, "--env-sanitize"]));
     }
 }
 

@@ -52,7 +52,11 @@ fn mistakes_show_their_line() {
             "unifrom = 1.0",
             &["did you mean `uniform`?"],
         ),
-        ("uniform = 1.0", "file = \"nowhere.hdr\"", &["nowhere.hdr"]),
+        (
+            "uniform = 1.0",
+            "file = \"nowhere.hdr\"",
+            &["nowhere.hdr", "relative to the folder"],
+        ),
         ("uniform = 1.0", "uniform = ", &["TOML"]),
         (
             "kind = \"sphere\"",

@@ -17,6 +17,7 @@ use accessor::Arrays;
 use gltf::json::{self, mesh::Semantic, validation::Checked};
 use gonio_num::Affine3;
 use material::Materials;
+use serde_json::error::Category;
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -206,10 +207,14 @@ fn check_version(path: &Path, plain: &serde_json::Value) -> Result<(), SceneErro
 fn json_error(path: &Path, error: &serde_json::Error) -> SceneError {
     let place = format!("JSON, line {}, column {}", error.line(), error.column());
     let text = error.to_string();
-    let found = text
+    let what = text
         .rsplit_once(" at line ")
-        .map_or(text.as_str(), |(what, _)| what)
-        .to_owned();
+        .map_or(text.as_str(), |(what, _)| what);
+    let found = match error.classify() {
+        Category::Eof => "the end of the file".to_owned(),
+        Category::Syntax | Category::Io => format!("text that is not JSON ({what})"),
+        Category::Data => what.to_owned(),
+    };
     SceneError::format(path, place, found, "a glTF 2.0 document")
 }
 

@@ -108,12 +108,13 @@ fn panorama(
     layout: Option<Layout>,
     options: &LoadOptions,
 ) -> Result<Environment, (String, Option<String>)> {
-    let bytes = options
-        .files
-        .read(path, options.max_bytes)
-        .map_err(|e| (e.to_string(), None))?;
+    let bytes = options.files.read(path, options.max_bytes).map_err(|e| {
+        let help = "a path is relative to the folder of the scene file";
+        (e.to_string(), Some(help.into()))
+    })?;
     let reading = gonio_env::LoadOptions {
         layout,
+        sanitize: options.sanitize,
         ..Default::default()
     };
     Environment::decode(&bytes, path, &reading).map_err(|e| (e.to_string(), e.help()))
