@@ -230,6 +230,15 @@ impl Environment {
         EnvSample { wi, radiance, pdf }
     }
 
+    /// How many texels were replaced when the picture was read, because they were NaN, infinite or negative: 0 unless that
+    /// was asked for.
+    pub fn replaced_texels(&self) -> u64 {
+        match &self.source {
+            Source::Uniform(_) => 0,
+            Source::Picture(p) => p.map.defects.non_finite + p.map.defects.negative,
+        }
+    }
+
     /// Whether no light comes from anywhere.
     pub fn is_black(&self) -> bool {
         let dark = |c: usize| match &self.source {

@@ -44,12 +44,23 @@ impl EnvironmentArguments {
         {
             scene.set_environment(Some(self.turned(environment)));
         }
+        let replaced = scene.lights.environment().and_then(replaced);
+        scene.warnings.extend(replaced);
         Ok(())
     }
 
     /// `environment`, turned as asked.
     pub fn turned(&self, environment: Environment) -> Environment {
         environment.rotated_deg(self.env_rotate)
+    }
+}
+
+/// The warning that texels of a panorama are not what its file says.
+pub(super) fn replaced(environment: &Environment) -> Option<String> {
+    match environment.replaced_texels() {
+        0 => None,
+        1 => Some("one unsound texel of the panorama was replaced".into()),
+        n => Some(format!("{n} unsound texels of the panorama were replaced")),
     }
 }
 

@@ -1,6 +1,6 @@
 //! `gonio measure`.
 
-use super::environment::EnvironmentArguments;
+use super::environment::{EnvironmentArguments, replaced};
 use super::failure::Failure;
 use super::parse;
 use super::render::load_scene;
@@ -139,10 +139,14 @@ impl Source {
     }
 
     fn some_environment(&self) -> Result<Environment, Failure> {
-        self.environment.load()?.ok_or_else(|| {
+        let environment = self.environment.load()?.ok_or_else(|| {
             Failure::usage("nothing to measure: no scene and no environment")
                 .with_help("name a scene file, or give --env FILE or --env uniform:1")
-        })
+        })?;
+        if let Some(text) = replaced(&environment) {
+            warn(&text);
+        }
+        Ok(environment)
     }
 
     /// The bare environment, when that is all there is.

@@ -42,11 +42,20 @@ fn nan_and_infinite_texels_are_named_and_can_be_replaced() {
         let replaced =
             ["non_finite_replaced", "negative_replaced"].map(|k| info[k].as_u64().unwrap());
         assert_eq!(replaced.iter().sum::<u64>(), 1, "{name}: {replaced:?}");
-        place.good(&["measure", "irradiance", "--env", name, "--env-sanitize"]);
+        let replaced = "warning: one unsound texel of the panorama was replaced\n";
+        let said = place.good(&["measure", "irradiance", "--env", name, "--env-sanitize"]);
+        assert_eq!(said.err, replaced);
+        let said = place.good(&tiny(&["--env", name, "--env-sanitize"]));
+        assert_eq!(said.err, replaced);
         let own = BALL.replace("uniform = 1.0", &format!("file = \"{name}\""));
         let scene = place.write("own.toml", own);
         place.bad(&["render", &scene], 3, &words);
-        place.good(&tiny(&[&scene, "--env-sanitize"]));
+        assert!(
+            place
+                .good(&tiny(&[&scene, "--env-sanitize"]))
+                .err
+                .contains(replaced)
+        );
     }
 }
 
