@@ -12,6 +12,7 @@ const COUNT: usize = 4096;
 const MODELS: &[&str] = &[
     "lambertian",
     "oren-nayar",
+    "ggx:interreflection=off",
     "ggx:metal=gold,interreflection=off",
     "ggx:metal=gold",
     "gltf:metallic=0.5",
@@ -31,7 +32,7 @@ fn vectors(name: &str) -> Vec<Vec3<f32>> {
     let mut rng = Rng::from_name(name);
     let draw = |_| {
         let (z, turn) = (0.05 + 0.95 * rng.next_f32(), rng.next_f32());
-        gonio_brdf::part::geometry::polar(z, (1.0 - z * z).sqrt(), turn)
+        gonio_radiometry::warp::around_axis(turn, (1.0 - z * z).sqrt(), z)
     };
     (0..COUNT).map(draw).collect()
 }

@@ -5,9 +5,9 @@
 //! Columns: wi x, y, z; wo x, y, z; f·cosθi red, green, blue; pdf. The directions are the same for every model: uniform on the
 //! hemisphere, rounded to single precision. For a model that only mirrors, wi, f·cosθi and pdf are those of a sample.
 
-use gonio_brdf::{Brdf, BrdfError, Model, ModelSpec, part::geometry::polar};
+use gonio_brdf::{Brdf, BrdfError, Model, ModelSpec};
 use gonio_num::Vec3;
-use gonio_radiometry::sequence::Rng;
+use gonio_radiometry::{sequence::Rng, warp::around_axis};
 
 fn main() -> Result<(), BrdfError> {
     let mut arguments = std::env::args().skip(1);
@@ -20,13 +20,13 @@ fn main() -> Result<(), BrdfError> {
     let mut rng = Rng::from_name("dump_values");
     let mut direction = || {
         let z = rng.next_f64().max(1e-3);
-        polar(z, (1.0 - z * z).sqrt(), rng.next_f64())
+        around_axis(rng.next_f64(), (1.0 - z * z).sqrt(), z)
             .to_f32()
             .to_f64()
     };
     for _ in 0..count {
         let (mut wi, wo): (Vec3<f64>, Vec3<f64>) = (direction(), direction());
-        let (mut f, mut pdf) = (model.eval_cos(wi, wo), model.pdf(wi, wo));
+        let (mut f, mut pdf) = model.eval_cos_and_pdf(wi, wo);
         if model.is_delta() {
             let s = model.sample(wo, [0.5; 3]);
             (wi, f, pdf) = (s.wi, s.weight, s.pdf);

@@ -1,5 +1,6 @@
 //! [`Brdf`], what every reflection function can do.
 
+use crate::part::colour::{each_component, scale};
 use gonio_num::{Mask, Real, Vec3};
 
 /// A direction drawn by [`Brdf::sample`].
@@ -36,9 +37,7 @@ impl<R: Real, const N: usize> Sample<R, N> {
         let valid = pdf.gt(R::lit(1e-37)) & wi.z.gt(R::zero());
         let over = R::select(valid, pdf, R::one()).recip();
         let mut weight = eval_cos;
-        for w in &mut weight {
-            *w = R::select(valid, *w * over, R::zero());
-        }
+        each_component!(N, k => { weight[k] = R::select(valid, eval_cos[k] * over, R::zero()); });
         let up = Vec3::new(R::zero(), R::zero(), R::one());
         Self {
             wi: Vec3::select(valid, wi, up),
@@ -52,9 +51,7 @@ impl<R: Real, const N: usize> Sample<R, N> {
     #[inline(always)]
     pub fn select(mask: R::Mask, a: Self, b: Self) -> Self {
         let mut weight = a.weight;
-        for k in 0..N {
-            weight[k] = R::select(mask, a.weight[k], b.weight[k]);
-        }
+        each_component!(N, k => { weight[k] = R::select(mask, a.weight[k], b.weight[k]); });
         Self {
             wi: Vec3::select(mask, a.wi, b.wi),
             weight,
@@ -75,17 +72,32 @@ pub trait Brdf<R: Real, const N: usize> {
     /// f·cosθi in sr⁻¹: [`Brdf::eval`] times max(wi.z, 0).
     #[inline(always)]
     fn eval_cos(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-        let cos = wi.z.max(R::zero());
-        let mut f = self.eval(wi, wo);
-        for x in &mut f {
-            *x = *x * cos;
-        }
-        f
+        scale(self.eval(wi, wo), wi.z.max(R::zero()))
     }
 
     /// Density in sr⁻¹ with which [`Brdf::sample`] draws `wi` for this `wo`. Its integral is at most 1: what is missing
     /// is the probability of drawing nothing or a discrete direction.
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R;
+
+    /// [`Brdf::eval`] and [`Brdf::pdf`] at once, the same to the bit: for models where the two share work.
+    #[inline(always)]
+    fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+        (self.eval(wi, wo), self.pdf(wi, wo))
+    }
+
+    /// [`Brdf::eval_cos`] and [`Brdf::pdf`] at once, the same to the bit: what an estimator of reflected light needs.
+    #[inline(always)]
+    fn eval_cos_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+        let (f, pdf) = self.eval_and_pdf(wi, wo);
+        (scale(f, wi.z.max(R::zero())), pdf)
+    }
+
+    /// The sample that has drawn `wi`: with the weight and the density of the whole function.
+    #[inline(always)]
+    fn sample_of(&self, wi: Vec3<R>, wo: Vec3<R>) -> Sample<R, N> {
+        let (eval_cos, pdf) = self.eval_cos_and_pdf(wi, wo);
+        Sample::continuous(wi, eval_cos, pdf)
+    }
 
     /// Draws a direction to the light for the viewer's direction `wo` from `u` in [0, 1)³: `u[0]`, `u[1]` place it,
     /// `u[2]` chooses among parts.

@@ -1,6 +1,7 @@
 //! Parameters: how a model declares them, and the values they take.
 
 use crate::{BrdfError, ModelSpec, registry};
+use gonio_radiometry::colour::srgb_decode;
 use std::fmt;
 
 /// One parameter of a model, declared once next to the formula that uses it.
@@ -230,7 +231,10 @@ fn parse_colour(text: &str) -> Option<[f64; 3]> {
         if !hex.is_ascii() {
             return None;
         }
-        let byte = |s: &str| u8::from_str_radix(s, 16).ok().map(srgb_to_linear);
+        let byte = |s: &str| {
+            let code = u8::from_str_radix(s, 16).ok()?;
+            Some(srgb_decode(f64::from(code) / 255.0))
+        };
         return match hex.len() {
             6 => Some([byte(&hex[0..2])?, byte(&hex[2..4])?, byte(&hex[4..6])?]),
             3 => {
@@ -245,16 +249,6 @@ fn parse_colour(text: &str) -> Option<[f64; 3]> {
         [x] => Some([*x; 3]),
         [r, g, b] => Some([*r, *g, *b]),
         _ => None,
-    }
-}
-
-/// The sRGB transfer function's inverse (IEC 61966-2-1).
-fn srgb_to_linear(code: u8) -> f64 {
-    let x = f64::from(code) / 255.0;
-    if x <= 0.040_45 {
-        x / 12.92
-    } else {
-        gonio_num::Real::powf((x + 0.055) / 1.055, 2.4)
     }
 }
 

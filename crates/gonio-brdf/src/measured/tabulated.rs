@@ -6,8 +6,8 @@ use super::cells::{
 };
 use super::choice::Choice;
 use crate::BrdfError;
-use crate::part::geometry::{cosine_density, cosine_hemisphere, polar};
 use gonio_num::{Real, Vec3};
+use gonio_radiometry::warp::{around_axis, cosine_hemisphere, cosine_hemisphere_density};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// How a table's cells are laid out. The value of a cell stands at its centre; the last axis varies fastest.
@@ -70,7 +70,7 @@ impl Axes {
             at[axis] = ((rest % shape[axis]) as f64 + 0.5) / shape[axis] as f64;
             rest /= shape[axis];
         }
-        let along = |theta: f64, turn: f64| polar(Real::cos(theta), Real::sin(theta), turn);
+        let along = |theta: f64, turn: f64| around_axis(turn, Real::sin(theta), Real::cos(theta));
         match self {
             Self::HalfDifference { .. } => {
                 let theta_h = at[1] * at[1] * FRAC_PI_2;
@@ -245,7 +245,7 @@ impl Tabulated {
                 choice.probability(i * phi_i + j) / cell_solid_angle(i, theta_i, phi_i)
             }
         };
-        COSINE_SHARE * cosine_density(wi) + (1.0 - COSINE_SHARE) * table
+        COSINE_SHARE * cosine_hemisphere_density(wi) + (1.0 - COSINE_SHARE) * table
     }
 
     /// Draws a direction for `wo`; `None` where that gives nothing.
@@ -254,14 +254,14 @@ impl Tabulated {
             return None;
         }
         let wi = if u[2] < COSINE_SHARE {
-            cosine_hemisphere(u[0], u[1])
+            cosine_hemisphere([u[0], u[1]])
         } else {
             match self.axes {
                 Axes::HalfDifference { theta_h, .. } => {
                     let (ring, rest) = self.choices[0].sample(u[1]);
                     let (low, high) = ring_cosines(ring, theta_h);
                     let cos = low + rest * (high - low);
-                    let h = polar(cos, (1.0 - cos * cos).max(0.0).sqrt(), u[0]);
+                    let h = around_axis(u[0], (1.0 - cos * cos).safe_sqrt(), cos);
                     if wo.dot(h) <= 0.0 {
                         return None;
                     }
@@ -274,7 +274,7 @@ impl Tabulated {
                     let (low, high) = row_cosines(i, theta_i);
                     let cos = low + rest * (high - low);
                     let turn = (j as f64 + u[0]) / phi_i as f64;
-                    polar(cos, (1.0 - cos * cos).max(0.0).sqrt(), turn)
+                    around_axis(turn, (1.0 - cos * cos).safe_sqrt(), cos)
                 }
             }
         };

@@ -1,10 +1,14 @@
 //! The Blinn–Phong model: diffuse and a power of the half vector's cosine.
 
-use crate::part::colour::{add, cast, mean, only_where, scale};
-use crate::part::geometry::{Half, above, cosine_density, cosine_hemisphere, polar};
-use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
+use crate::part::diffuse_and_lobe::{self, DiffuseAndLobe};
+use crate::part::geometry::{Half, above, mirrored_about};
+use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, Sample};
 use gonio_num::{Real, Vec3};
-use std::f64::consts::{FRAC_1_PI, LN_2, PI};
+use gonio_radiometry::warp::{
+    cosine_hemisphere, cosine_hemisphere_density, cosine_power_hemisphere,
+    cosine_power_hemisphere_density,
+};
+use std::f64::consts::{LN_2, PI, TAU};
 
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
@@ -12,29 +16,10 @@ pub const INFO: ModelInfo = ModelInfo {
     summary: "diffuse, and a power of the cosine between the normal and the half vector",
     paper: "Blinn 1977, \"Models of Light Reflection for Computer Synthesized Pictures\"; Giesen 2009 for the normalisation",
     parameters: &[
-        ParameterInfo::colour(
-            "diffuse",
-            (0.0, 1.0),
-            Some([0.5; 3]),
-            "diffuse reflectance kd",
-        ),
-        ParameterInfo::colour(
-            "specular",
-            (0.0, 1.0),
-            Some([0.5; 3]),
-            "scale ks of the lobe",
-        ),
-        ParameterInfo::number(
-            "exponent",
-            "",
-            (0.0, 1e5),
-            Some(80.0),
-            "exponent p: the larger, the narrower the lobe",
-        ),
-        ParameterInfo::choice(
-            "normalisation",
-            &["energy", "published"],
-            Some("energy"),
+        diffuse_and_lobe::DIFFUSE,
+        diffuse_and_lobe::SPECULAR,
+        diffuse_and_lobe::exponent(80.0),
+        diffuse_and_lobe::normalisation(
             "published: the lobe is ks·cosᵖ; energy: scaled so that ks is its albedo at normal incidence",
         ),
     ],
@@ -60,14 +45,8 @@ fn declares(spec: &ModelSpec) -> Declares {
 /// published: c = 1.
 #[derive(Debug, Clone, Copy)]
 pub struct BlinnPhong<R: Real, const N: usize> {
-    /// kd, [0, 1].
-    pub diffuse: [R; N],
-    /// ks, [0, 1].
-    pub specular: [R; N],
-    /// p, [0, 10⁵].
-    pub exponent: R,
-    /// Whether the lobe is normalised.
-    pub normalised: bool,
+    /// kd, ks, p, and whether the lobe is normalised.
+    pub constants: DiffuseAndLobe<R, N>,
 }
 
 /// Albedo of cosᵖθh at normal incidence: 8π (2^(−p/2) + p)/((p + 2)(p + 4)).
@@ -80,96 +59,99 @@ fn plain_albedo<R: Real>(p: R) -> R {
 
 impl<R: Real, const N: usize> BlinnPhong<R, N> {
     pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
-        Ok(Self {
-            diffuse: spec.colour("diffuse")?,
-            specular: spec.colour("specular")?,
-            exponent: spec.real("exponent"),
-            normalised: spec.word("normalisation") == "energy",
-        })
+        let constants = DiffuseAndLobe::from_spec(spec)?;
+        Ok(Self { constants })
     }
 
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> BlinnPhong<S, N> {
-        BlinnPhong {
-            diffuse: cast(self.diffuse, f),
-            specular: cast(self.specular, f),
-            exponent: f(self.exponent),
-            normalised: self.normalised,
-        }
+        let constants = self.constants.cast(f);
+        BlinnPhong { constants }
     }
 
     pub(crate) fn set(&mut self, parameter: &str, value: [R; 3]) {
-        match parameter {
-            "diffuse" => self.diffuse = super::components(value),
-            "specular" => self.specular = super::components(value),
-            _ => self.exponent = value[0],
+        self.constants.set(parameter, value);
+    }
+
+    /// The constant c over that of the density of half vectors, (p + 1)/2π.
+    #[inline(always)]
+    fn relative_c(&self) -> R {
+        let p = self.constants.exponent;
+        let over = R::lit(TAU) / (p + R::one());
+        if self.constants.normalised {
+            over / plain_albedo(p)
+        } else {
+            over
         }
     }
 
+    /// Albedo of the lobe at normal incidence over ks.
     #[inline(always)]
-    fn constant(&self) -> R {
-        if self.normalised {
-            plain_albedo(self.exponent).recip()
-        } else {
+    fn lobe_gain(&self) -> R {
+        if self.constants.normalised {
             R::one()
-        }
-    }
-
-    #[inline(always)]
-    fn lobe_albedo(&self) -> R {
-        if self.normalised {
-            mean(self.specular)
         } else {
-            mean(self.specular) * plain_albedo(self.exponent)
+            plain_albedo(self.constants.exponent)
         }
     }
 
+    /// f, from the density of half vectors (p + 1)/2π cosᵖθh.
     #[inline(always)]
-    fn diffuse_probability(&self) -> R {
-        let (d, s) = (mean(self.diffuse), self.lobe_albedo());
-        // Both black: whatever is drawn has weight 0.
-        (d + R::lit(1e-20)) / (d + s + R::lit(1e-20))
+    fn value(&self, wi: Vec3<R>, wo: Vec3<R>, halves: R) -> [R; N] {
+        self.constants
+            .value(above(wi, wo), halves * self.relative_c())
+    }
+
+    /// pd cosθi/π + (1 − pd)(p + 1)/2π cosᵖθh/(4 cosθ′).
+    #[inline(always)]
+    fn density(&self, wi: Vec3<R>, wo: Vec3<R>, half: &Half<R>, halves: R) -> R {
+        let lobe = R::lit(0.25) * halves / half.cos.max(R::lit(1e-15));
+        let diffuse = cosine_hemisphere_density(wi);
+        self.constants
+            .density(above(wi, wo), self.lobe_gain(), diffuse, lobe)
+    }
+
+    /// The half vector and its density (p + 1)/2π cosᵖθh.
+    #[inline(always)]
+    fn half(&self, wi: Vec3<R>, wo: Vec3<R>) -> (Half<R>, R) {
+        let half = Half::new(wi, wo);
+        let density = cosine_power_hemisphere_density(half.h, self.constants.exponent);
+        (half, density)
     }
 }
 
 impl<R: Real, const N: usize> Brdf<R, N> for BlinnPhong<R, N> {
     #[inline(always)]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-        let half = Half::new(wi, wo);
-        let lobe = half.h.z.saturate().powf(self.exponent) * self.constant();
-        let f = add(
-            scale(self.diffuse, R::lit(FRAC_1_PI)),
-            scale(self.specular, lobe),
-        );
-        only_where(above(wi, wo), f)
+        let (_, halves) = self.half(wi, wo);
+        self.value(wi, wo, halves)
     }
 
-    /// pd cosθi/π + (1 − pd)(p + 1)/2π cosᵖθh/(4 cosθ′).
     #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-        let half = Half::new(wi, wo);
-        let lobe = half.h.z.saturate().powf(self.exponent) * (self.exponent + R::one())
-            / half.cos.max(R::lit(1e-15))
-            * R::lit(FRAC_1_PI / 8.0);
-        let p = self.diffuse_probability();
-        let density = p.lerp(lobe, cosine_density(wi));
-        R::select(above(wi, wo), density, R::zero())
+        let (half, halves) = self.half(wi, wo);
+        self.density(wi, wo, &half, halves)
+    }
+
+    #[inline(always)]
+    fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+        let (half, halves) = self.half(wi, wo);
+        (
+            self.value(wi, wo, halves),
+            self.density(wi, wo, &half, halves),
+        )
     }
 
     #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-        let diffuse = cosine_hemisphere(u[0], u[1]);
-        let cos = (R::one() - u[1]).powf((self.exponent + R::one()).recip());
-        let sin = (R::one() - cos * cos).safe_sqrt();
-        let h = polar(cos, sin, u[0]);
-        // A half vector turned away from wo would mirror wo to where h is not the half vector: no direction.
-        let down = Vec3::new(R::zero(), R::zero(), -R::one());
-        let lobe = Vec3::select(wo.dot(h).gt(R::zero()), wo.reflect(h), down);
-        let wi = Vec3::select(u[2].lt(self.diffuse_probability()), diffuse, lobe);
-        Sample::continuous(wi, self.eval_cos(wi, wo), self.pdf(wi, wo))
+        let diffuse = cosine_hemisphere([u[0], u[1]]);
+        let h = cosine_power_hemisphere([u[0], u[1]], self.constants.exponent);
+        let pd = self.constants.diffuse_probability(self.lobe_gain());
+        let wi = Vec3::select(u[2].lt(pd), diffuse, mirrored_about(wo, h));
+        self.sample_of(wi, wo)
     }
 
     #[inline(always)]
     fn albedo_estimate(&self, _wo: Vec3<R>) -> R {
-        mean(self.diffuse) + self.lobe_albedo()
+        self.constants.albedo(self.lobe_gain())
     }
 }

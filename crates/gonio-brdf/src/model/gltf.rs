@@ -1,11 +1,12 @@
 //! The metallic-roughness material of glTF 2.0.
 
-use crate::part::colour::{cast, largest, mean, only_where};
+use crate::part::colour::{add, cast, each_component, largest, mean, only_where, scale};
 use crate::part::distribution::{ALPHA_MIN, Distribution, Shape};
-use crate::part::geometry::{Half, above, cosine_density, cosine_hemisphere};
+use crate::part::geometry::{Half, above};
 use crate::part::masking::{Masking, smith_g1_over_cos, visibility};
 use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
+use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density};
 use std::f64::consts::FRAC_1_PI;
 
 /// What the registry knows.
@@ -145,10 +146,10 @@ impl<R: Real, const N: usize> Gltf<R, N> {
     fn dielectric(&self, weight: R) -> [R; N] {
         let r = (self.ior - R::one()) / (self.ior + R::one());
         let mut f = self.specular_color;
-        for x in &mut f {
-            let f0 = (r * r * *x).min(R::one()) * self.specular;
-            *x = f0 + (self.specular - f0) * weight;
-        }
+        each_component!(N, k => {
+            let f0 = (r * r * f[k]).min(R::one()) * self.specular;
+            f[k] = f0 + (self.specular - f0) * weight;
+        });
         f
     }
 
@@ -159,10 +160,10 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         let weight = (one - cos).saturate().pow5();
         let mut specular = self.dielectric(weight);
         let diffuse = (one - self.metallic) * (one - largest(specular));
-        for k in 0..N {
+        each_component!(N, k => {
             let c = self.base_color[k];
             specular[k] = self.metallic.lerp(specular[k], c + (one - c) * weight);
-        }
+        });
         (diffuse, specular)
     }
 
@@ -173,31 +174,47 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         let diffuse = d * mean(self.base_color);
         diffuse / (diffuse + mean(s) + R::lit(1e-6))
     }
+
+    /// f, from the half vector and D of it.
+    #[inline(always)]
+    fn value(&self, wi: Vec3<R>, wo: Vec3<R>, half: &Half<R>, d: R) -> [R; N] {
+        let s = d * visibility(Masking::Smith, &self.distribution, wi, wo, half);
+        let (diffuse, specular) = self.shares(half.cos);
+        let diffuse = diffuse * R::lit(FRAC_1_PI);
+        only_where(
+            above(wi, wo),
+            add(scale(specular, s), scale(self.base_color, diffuse)),
+        )
+    }
+
+    /// The sampling density, from D of the half vector.
+    #[inline(always)]
+    fn density(&self, wi: Vec3<R>, wo: Vec3<R>, d: R) -> R {
+        let facets = R::lit(0.25) * d * smith_g1_over_cos(&self.distribution, wo);
+        let cosine = cosine_hemisphere_density(wi);
+        let density = self.diffuse_probability(wo).lerp(facets, cosine);
+        R::select(above(wi, wo), density, R::zero())
+    }
 }
 
 impl<R: Real, const N: usize> Brdf<R, N> for Gltf<R, N> {
     #[inline(always)]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
         let half = Half::new(wi, wo);
-        let d = &self.distribution;
-        let s = d.density(half.h) * visibility(Masking::Smith, d, wi, wo, &half);
-        let (diffuse, specular) = self.shares(half.cos);
-        let mut f = specular;
-        for k in 0..N {
-            f[k] = f[k] * s + self.base_color[k] * (diffuse * R::lit(FRAC_1_PI));
-        }
-        only_where(above(wi, wo), f)
+        self.value(wi, wo, &half, self.distribution.density(half.h))
     }
 
     #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
         let half = Half::new(wi, wo);
-        let d = &self.distribution;
-        let facets = R::lit(0.25) * d.density(half.h) * smith_g1_over_cos(d, wo);
-        let density = self
-            .diffuse_probability(wo)
-            .lerp(facets, cosine_density(wi));
-        R::select(above(wi, wo), density, R::zero())
+        self.density(wi, wo, self.distribution.density(half.h))
+    }
+
+    #[inline(always)]
+    fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+        let half = Half::new(wi, wo);
+        let d = self.distribution.density(half.h);
+        (self.value(wi, wo, &half, d), self.density(wi, wo, d))
     }
 
     #[inline(always)]
@@ -205,10 +222,10 @@ impl<R: Real, const N: usize> Brdf<R, N> for Gltf<R, N> {
         let h = self.distribution.sample_visible_ggx(wo, u[0], u[1]);
         let wi = Vec3::select(
             u[2].lt(self.diffuse_probability(wo)),
-            cosine_hemisphere(u[0], u[1]),
+            cosine_hemisphere([u[0], u[1]]),
             wo.reflect(h),
         );
-        Sample::continuous(wi, self.eval_cos(wi, wo), self.pdf(wi, wo))
+        self.sample_of(wi, wo)
     }
 
     #[inline(always)]

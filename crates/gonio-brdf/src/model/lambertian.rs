@@ -1,9 +1,10 @@
 //! Perfectly diffuse reflection (T15).
 
 use crate::part::colour::{cast, mean, only_where, scale};
-use crate::part::geometry::{above, cosine_density, cosine_hemisphere};
+use crate::part::geometry::above;
 use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
+use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density};
 
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
@@ -60,13 +61,12 @@ impl<R: Real, const N: usize> Brdf<R, N> for Lambertian<R, N> {
     /// cosθi/π.
     #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-        R::select(above(wi, wo), cosine_density(wi), R::zero())
+        R::select(above(wi, wo), cosine_hemisphere_density(wi), R::zero())
     }
 
     #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-        let wi = cosine_hemisphere(u[0], u[1]);
-        Sample::continuous(wi, self.eval_cos(wi, wo), self.pdf(wi, wo))
+        self.sample_of(cosine_hemisphere([u[0], u[1]]), wo)
     }
 
     #[inline(always)]

@@ -44,6 +44,9 @@ macro_rules! models {
             fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
                 match self { $(Self::$variant(m) => m.pdf(wi, wo),)* }
             }
+            fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+                match self { $(Self::$variant(m) => m.eval_and_pdf(wi, wo),)* }
+            }
             fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
                 match self { $(Self::$variant(m) => m.sample(wo, u),)* }
             }

@@ -1,9 +1,10 @@
 //! Oren & Nayar's model of rough diffuse surfaces.
 
-use crate::part::colour::{cast, mean, only_where};
-use crate::part::geometry::{above, cosine_density, cosine_hemisphere, sin_theta};
+use crate::part::colour::{cast, each_component, mean, only_where};
+use crate::part::geometry::{above, sin_theta};
 use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
+use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// What the registry knows.
@@ -127,22 +128,19 @@ impl<R: Real, const N: usize> Brdf<R, N> for OrenNayar<R, N> {
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
         let (once, twice) = self.terms(wi, wo);
         let mut f = self.reflectance;
-        for x in &mut f {
-            *x = *x * R::lit(FRAC_1_PI) * (once + twice * *x);
-        }
+        each_component!(N, k => { f[k] = f[k] * R::lit(FRAC_1_PI) * (once + twice * f[k]); });
         only_where(above(wi, wo), f)
     }
 
     /// cosθi/π.
     #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-        R::select(above(wi, wo), cosine_density(wi), R::zero())
+        R::select(above(wi, wo), cosine_hemisphere_density(wi), R::zero())
     }
 
     #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-        let wi = cosine_hemisphere(u[0], u[1]);
-        Sample::continuous(wi, self.eval_cos(wi, wo), self.pdf(wi, wo))
+        self.sample_of(cosine_hemisphere([u[0], u[1]]), wo)
     }
 
     #[inline(always)]

@@ -1,12 +1,13 @@
 //! Phong's model (T16): diffuse and a lobe around the mirror direction.
 
-use crate::part::colour::{add, cast, mean, only_where, scale};
-use crate::part::geometry::{
-    above, cosine_density, cosine_hemisphere, mirror_cosine, mirrored, polar,
-};
-use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
+use crate::part::diffuse_and_lobe::{self, DiffuseAndLobe};
+use crate::part::geometry::{above, mirror_cosine, mirrored};
+use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, Sample};
 use gonio_num::{Frame, Real, Vec3};
-use std::f64::consts::{FRAC_1_PI, PI, TAU};
+use gonio_radiometry::warp::{
+    cosine_hemisphere, cosine_hemisphere_density, cosine_power_hemisphere,
+};
+use std::f64::consts::{FRAC_1_PI, TAU};
 
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
@@ -14,29 +15,10 @@ pub const INFO: ModelInfo = ModelInfo {
     summary: "diffuse, and a power of the cosine around the mirror direction",
     paper: "Phong 1975, \"Illumination for Computer Generated Pictures\"; Lafortune & Willems 1994 for the normalised form",
     parameters: &[
-        ParameterInfo::colour(
-            "diffuse",
-            (0.0, 1.0),
-            Some([0.5; 3]),
-            "diffuse reflectance kd",
-        ),
-        ParameterInfo::colour(
-            "specular",
-            (0.0, 1.0),
-            Some([0.5; 3]),
-            "scale ks of the lobe",
-        ),
-        ParameterInfo::number(
-            "exponent",
-            "",
-            (0.0, 1e5),
-            Some(20.0),
-            "exponent p: the larger, the narrower the lobe",
-        ),
-        ParameterInfo::choice(
-            "normalisation",
-            &["energy", "published"],
-            Some("energy"),
+        diffuse_and_lobe::DIFFUSE,
+        diffuse_and_lobe::SPECULAR,
+        diffuse_and_lobe::exponent(20.0),
+        diffuse_and_lobe::normalisation(
             "published: the lobe is ks·cosᵖ; energy: times (p + 2)/2π, so that ks is its albedo at normal incidence",
         ),
     ],
@@ -65,112 +47,91 @@ fn declares(spec: &ModelSpec) -> Declares {
 ///   the lobe. Read as a BRDF that would be this lobe over cosθi: neither reciprocal nor bounded.)
 #[derive(Debug, Clone, Copy)]
 pub struct Phong<R: Real, const N: usize> {
-    /// kd, [0, 1].
-    pub diffuse: [R; N],
-    /// ks, [0, 1].
-    pub specular: [R; N],
-    /// p, [0, 10⁵].
-    pub exponent: R,
-    /// Whether c = (p + 2)/2π, otherwise 1.
-    pub normalised: bool,
+    /// kd, ks, p, and whether c = (p + 2)/2π, otherwise 1.
+    pub constants: DiffuseAndLobe<R, N>,
 }
 
 impl<R: Real, const N: usize> Phong<R, N> {
     pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
-        Ok(Self {
-            diffuse: spec.colour("diffuse")?,
-            specular: spec.colour("specular")?,
-            exponent: spec.real("exponent"),
-            normalised: spec.word("normalisation") == "energy",
-        })
+        let constants = DiffuseAndLobe::from_spec(spec)?;
+        Ok(Self { constants })
     }
 
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Phong<S, N> {
-        Phong {
-            diffuse: cast(self.diffuse, f),
-            specular: cast(self.specular, f),
-            exponent: f(self.exponent),
-            normalised: self.normalised,
-        }
+        let constants = self.constants.cast(f);
+        Phong { constants }
     }
 
     pub(crate) fn set(&mut self, parameter: &str, value: [R; 3]) {
-        match parameter {
-            "diffuse" => self.diffuse = super::components(value),
-            "specular" => self.specular = super::components(value),
-            _ => self.exponent = value[0],
-        }
+        self.constants.set(parameter, value);
+    }
+
+    /// cosᵖα, 0 for α ≥ 90°.
+    #[inline(always)]
+    fn lobe(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
+        let cos = mirror_cosine(wi, wo);
+        let power = cos.clamp(R::zero(), R::one()).powf(self.constants.exponent);
+        R::select(cos.gt(R::zero()), power, R::zero())
     }
 
     /// The constant c.
     #[inline(always)]
-    fn constant(&self) -> R {
-        if self.normalised {
-            (self.exponent + R::lit(2.0)) * R::lit(0.5 * FRAC_1_PI)
+    fn c(&self) -> R {
+        if self.constants.normalised {
+            (self.constants.exponent + R::lit(2.0)) * R::lit(0.5 * FRAC_1_PI)
         } else {
             R::one()
         }
     }
 
-    /// Albedo of the lobe at normal incidence, mean over the colours.
+    /// Albedo of the lobe at normal incidence over ks: 2πc/(p + 2).
     #[inline(always)]
-    fn lobe_albedo(&self) -> R {
-        self.constant() * mean(self.specular) * R::lit(2.0 * PI) / (self.exponent + R::lit(2.0))
+    fn lobe_gain(&self) -> R {
+        self.c() * R::lit(TAU) / (self.constants.exponent + R::lit(2.0))
     }
 
-    /// Probability of the diffuse part.
+    /// pd cosθi/π + (1 − pd)(p + 1)/2π cosᵖα.
     #[inline(always)]
-    fn diffuse_probability(&self) -> R {
-        let (d, s) = (mean(self.diffuse), self.lobe_albedo());
-        // Both black: whatever is drawn has weight 0.
-        (d + R::lit(1e-20)) / (d + s + R::lit(1e-20))
+    fn density(&self, wi: Vec3<R>, wo: Vec3<R>, lobe: R) -> R {
+        let lobe = lobe * (self.constants.exponent + R::one()) * R::lit(0.5 * FRAC_1_PI);
+        let diffuse = cosine_hemisphere_density(wi);
+        self.constants
+            .density(above(wi, wo), self.lobe_gain(), diffuse, lobe)
     }
 }
 
 impl<R: Real, const N: usize> Brdf<R, N> for Phong<R, N> {
     #[inline(always)]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-        let cos = mirror_cosine(wi, wo);
-        let lobe = R::select(
-            cos.gt(R::zero()),
-            cos.clamp(R::zero(), R::one()).powf(self.exponent),
-            R::zero(),
-        ) * self.constant();
-        let f = add(
-            scale(self.diffuse, R::lit(FRAC_1_PI)),
-            scale(self.specular, lobe),
-        );
-        only_where(above(wi, wo), f)
+        self.constants
+            .value(above(wi, wo), self.lobe(wi, wo) * self.c())
     }
 
-    /// pd cosθi/π + (1 − pd)(p + 1)/2π cosᵖα.
     #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-        let cos = mirror_cosine(wi, wo);
-        let lobe = R::select(
-            cos.gt(R::zero()),
-            cos.clamp(R::zero(), R::one()).powf(self.exponent),
-            R::zero(),
-        ) * (self.exponent + R::one())
-            * R::lit(0.5 * FRAC_1_PI);
-        let p = self.diffuse_probability();
-        let density = p.lerp(lobe, cosine_density(wi));
-        R::select(above(wi, wo), density, R::zero())
+        self.density(wi, wo, self.lobe(wi, wo))
+    }
+
+    #[inline(always)]
+    fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+        let lobe = self.lobe(wi, wo);
+        (
+            self.constants.value(above(wi, wo), lobe * self.c()),
+            self.density(wi, wo, lobe),
+        )
     }
 
     #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-        let diffuse = cosine_hemisphere(u[0], u[1]);
-        // cosα = (1 − u₁)^(1/(p + 1)) has the density (p + 1)/2π cosᵖα.
-        let cos = (R::one() - u[1]).powf((self.exponent + R::one()).recip());
-        let sin = (R::one() - cos * cos).safe_sqrt();
-        let lobe = Frame::from_normal(mirrored(wo)).to_world(polar(cos, sin, u[0]));
-        let wi = Vec3::select(u[2].lt(self.diffuse_probability()), diffuse, lobe);
-        Sample::continuous(wi, self.eval_cos(wi, wo), self.pdf(wi, wo))
+        let diffuse = cosine_hemisphere([u[0], u[1]]);
+        let lobe = cosine_power_hemisphere([u[0], u[1]], self.constants.exponent);
+        let lobe = Frame::from_normal(mirrored(wo)).to_world(lobe);
+        let pd = self.constants.diffuse_probability(self.lobe_gain());
+        self.sample_of(Vec3::select(u[2].lt(pd), diffuse, lobe), wo)
     }
 
     #[inline(always)]
     fn albedo_estimate(&self, _wo: Vec3<R>) -> R {
-        mean(self.diffuse) + self.lobe_albedo()
+        self.constants.albedo(self.lobe_gain())
     }
 }

@@ -91,6 +91,12 @@ impl<R: Number, const N: usize> Brdf<R, N> for Scaled<R, N> {
     }
 
     #[inline]
+    fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+        let (f, pdf) = self.of.eval_and_pdf(wi, wo);
+        (mul(self.factor, f), pdf)
+    }
+
+    #[inline]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
         let s = self.of.sample(wo, u);
         Sample {

@@ -103,6 +103,18 @@ impl<R: Number, const N: usize> Brdf<R, N> for Sum<R, N> {
     }
 
     #[inline]
+    fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+        let (floor, total) = self.choices(wo);
+        let (mut f, mut sum) = (grey(R::zero()), R::zero());
+        for (k, part) in self.parts.iter().enumerate() {
+            let (part_f, pdf) = part.eval_and_pdf(wi, wo);
+            f = add(f, part_f);
+            sum = sum + self.choice(k, wo, floor) * pdf;
+        }
+        (f, R::select(above(wi, wo), sum / total, R::zero()))
+    }
+
+    #[inline]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
         let (floor, total) = self.choices(wo);
         let x = u[2] * total;
@@ -124,8 +136,9 @@ impl<R: Number, const N: usize> Brdf<R, N> for Sum<R, N> {
             ..drawn
         };
         let (wi, valid) = (drawn.wi, drawn.pdf.gt(R::zero()));
-        let whole = only_where(valid, self.eval_cos(wi, wo));
-        let density = R::select(valid, self.pdf(wi, wo), R::zero());
+        let (whole, density) = self.eval_cos_and_pdf(wi, wo);
+        let whole = only_where(valid, whole);
+        let density = R::select(valid, density, R::zero());
         Sample::select(drawn.delta, delta, Sample::continuous(wi, whole, density))
     }
 

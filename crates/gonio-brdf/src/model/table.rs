@@ -113,7 +113,7 @@ impl<R: Number, const N: usize> Brdf<R, N> for Table<R, N> {
                 .to_array()
         });
         let wi = Vec3::new(x, y, z);
-        Sample::continuous(wi, self.eval_cos(wi, wo), self.pdf(wi, wo))
+        self.sample_of(wi, wo)
     }
 
     fn albedo_estimate(&self, _wo: Vec3<R>) -> R {

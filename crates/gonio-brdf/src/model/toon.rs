@@ -1,9 +1,10 @@
 //! A cartoon shader (T20).
 
 use crate::part::colour::{add, cast, mean, only_where, scale};
-use crate::part::geometry::{Half, above, cosine_density, cosine_hemisphere, polar};
+use crate::part::geometry::{Half, above, mirrored_about};
 use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
+use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density, uniform_cone};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// What the registry knows.
@@ -124,19 +125,19 @@ impl<R: Real, const N: usize> Brdf<R, N> for Toon<R, N> {
         let cone = (R::one() - self.cos_edge).max(R::lit(1e-12)) * R::lit(8.0 * PI);
         let spot = (cone * half.cos.max(R::lit(1e-15))).recip();
         let p = self.highlight_probability();
-        let density = p.lerp(cosine_density(wi), R::select(inside, spot, R::zero()));
+        let density = p.lerp(
+            cosine_hemisphere_density(wi),
+            R::select(inside, spot, R::zero()),
+        );
         R::select(above(wi, wo), density, R::zero())
     }
 
     #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-        let diffuse = cosine_hemisphere(u[0], u[1]);
-        let cos = R::one() - u[1] * (R::one() - self.cos_edge);
-        let h = polar(cos, (R::one() - cos * cos).safe_sqrt(), u[0]);
-        let down = Vec3::new(R::zero(), R::zero(), -R::one());
-        let spot = Vec3::select(wo.dot(h).gt(R::zero()), wo.reflect(h), down);
+        let diffuse = cosine_hemisphere([u[0], u[1]]);
+        let spot = mirrored_about(wo, uniform_cone([u[0], u[1]], self.cos_edge));
         let wi = Vec3::select(u[2].lt(self.highlight_probability()), spot, diffuse);
-        Sample::continuous(wi, self.eval_cos(wi, wo), self.pdf(wi, wo))
+        self.sample_of(wi, wo)
     }
 
     #[inline(always)]

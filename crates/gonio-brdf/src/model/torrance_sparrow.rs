@@ -1,13 +1,14 @@
 //! The microfacet model of Torrance and Sparrow (T18).
 
 use crate::part::albedo;
-use crate::part::colour::{add, cast, mean, only_where, scale};
+use crate::part::colour::{add, cast, each_component, mean, only_where, scale};
 use crate::part::distribution::{ALPHA_MIN, Distribution, Shape};
 use crate::part::fresnel::{self, Fresnel};
-use crate::part::geometry::{Half, above, cosine_density, cosine_hemisphere, turned};
+use crate::part::geometry::{Half, above, mirrored_about, turned};
 use crate::part::masking::{Masking, smith_g1_over_cos, visibility};
 use crate::{Alias, Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
+use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density};
 use std::f64::consts::{FRAC_1_PI, PI};
 
 /// What the registry knows.
@@ -174,10 +175,23 @@ pub struct TorranceSparrow<R: Real, const N: usize> {
     aspect: R,
 }
 
-/// The interreflection lobe for one pair of directions.
+/// What evaluation and density share for one pair of directions, in the frame of (αx, αy).
+struct Pair<R: Real> {
+    wi: Vec3<R>,
+    wo: Vec3<R>,
+    half: Half<R>,
+    /// D of the half vector.
+    d: R,
+}
+
+/// The interreflection lobe towards one viewer.
 struct Lobe<R: Real, const N: usize> {
-    /// f_ms.
-    f: [R; N],
+    /// √α.
+    roughness: R,
+    /// (1 − E(μr))/(π (1 − Ē)).
+    shape: R,
+    /// F_ms.
+    factor: [R; N],
     /// Probability of sampling it from ωr.
     probability: R,
 }
@@ -258,38 +272,75 @@ impl<R: Real, const N: usize> TorranceSparrow<R, N> {
     }
 
     #[inline(always)]
-    fn lobe(&self, mu_i: R, mu_o: R, average: [R; N]) -> Lobe<R, N> {
-        let d = &self.distribution;
-        let table = albedo::losses(d.shape, self.masking);
-        let roughness = d.alpha_x.min(d.alpha_y).sqrt();
-        let (loss_i, loss_o) = (
-            table.directional(mu_i, roughness),
-            table.directional(mu_o, roughness),
-        );
-        let mean_loss = table.mean(roughness);
-        let shape = loss_i * loss_o * R::lit(FRAC_1_PI) / mean_loss.max(R::lit(1e-9));
-        let mut factor = average;
-        for x in &mut factor {
-            *x = *x * *x * (R::one() - mean_loss) / (R::one() - *x * mean_loss);
-        }
-        let (many, once) = (
-            loss_o * mean(factor),
-            (R::one() - loss_o) * mean(average) + R::lit(1e-20),
-        );
-        Lobe {
-            f: scale(factor, shape),
-            probability: many / (many + once),
+    fn pair(&self, wi: Vec3<R>, wo: Vec3<R>) -> Pair<R> {
+        let (wi, wo) = (self.in_axes(wi), self.in_axes(wo));
+        let half = Half::new(wi, wo);
+        Pair {
+            wi,
+            wo,
+            half,
+            d: self.distribution.density(half.h),
         }
     }
 
-    /// Density of the directions that facets with the sampled normals give.
+    /// The interreflection lobe towards a viewer at cosine `mu_o`, if there is one.
     #[inline(always)]
-    fn facet_density(&self, wo: Vec3<R>, half: &Half<R>) -> R {
+    fn lobe(&self, mu_o: R) -> Option<Lobe<R, N>> {
+        let Some(average) = self.interreflection else {
+            return None;
+        };
         let d = &self.distribution;
-        let quarter = R::lit(0.25) * d.density(half.h);
-        match d.shape {
-            Shape::Ggx => quarter * smith_g1_over_cos(d, wo),
-            Shape::Beckmann | Shape::BlinnPhong => quarter * half.h.z / half.cos.max(R::lit(1e-15)),
+        let table = albedo::losses(d.shape, self.masking);
+        let roughness = d.alpha_x.min(d.alpha_y).sqrt();
+        let loss_o = table.directional(mu_o, roughness);
+        let mean_loss = table.mean(roughness);
+        let mut factor = average;
+        each_component!(N, k => {
+            let f = average[k];
+            factor[k] = f * f * (R::one() - mean_loss) / (R::one() - f * mean_loss);
+        });
+        let many = loss_o * mean(factor);
+        let once = (R::one() - loss_o) * mean(average) + R::lit(1e-20);
+        Some(Lobe {
+            roughness,
+            shape: loss_o * R::lit(FRAC_1_PI) / mean_loss.max(R::lit(1e-9)),
+            factor,
+            probability: many / (many + once),
+        })
+    }
+
+    /// f of a pair above the horizon.
+    #[inline(always)]
+    fn value(&self, pair: &Pair<R>, lobe: &Option<Lobe<R, N>>) -> [R; N] {
+        let d = &self.distribution;
+        let (wi, wo) = (pair.wi, pair.wo);
+        let facets = pair.d * visibility(self.masking, d, wi, wo, &pair.half);
+        let f = scale(self.fresnel.eval(pair.half.cos), facets);
+        match lobe {
+            Some(lobe) => {
+                let table = albedo::losses(d.shape, self.masking);
+                let loss_i = table.directional(wi.z, lobe.roughness);
+                add(f, scale(lobe.factor, lobe.shape * loss_i))
+            }
+            None => f,
+        }
+    }
+
+    /// The sampling density of a pair above the horizon.
+    #[inline(always)]
+    fn density(&self, pair: &Pair<R>, lobe: &Option<Lobe<R, N>>) -> R {
+        let quarter = R::lit(0.25) * pair.d;
+        let facets = match self.distribution.shape {
+            Shape::Ggx => quarter * smith_g1_over_cos(&self.distribution, pair.wo),
+            Shape::Beckmann | Shape::BlinnPhong => {
+                quarter * pair.half.h.z / pair.half.cos.max(R::lit(1e-15))
+            }
+        };
+        match lobe {
+            Some(lobe) => lobe
+                .probability
+                .lerp(facets, cosine_hemisphere_density(pair.wi)),
+            None => facets,
         }
     }
 }
@@ -297,28 +348,23 @@ impl<R: Real, const N: usize> TorranceSparrow<R, N> {
 impl<R: Real, const N: usize> Brdf<R, N> for TorranceSparrow<R, N> {
     #[inline(always)]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-        let up = above(wi, wo);
-        let (wi, wo) = (self.in_axes(wi), self.in_axes(wo));
-        let half = Half::new(wi, wo);
-        let d = &self.distribution;
-        let facets = d.density(half.h) * visibility(self.masking, d, wi, wo, &half);
-        let mut f = scale(self.fresnel.eval(half.cos), facets);
-        if let Some(average) = self.interreflection {
-            f = add(f, self.lobe(wi.z, wo.z, average).f);
-        }
-        only_where(up, f)
+        let pair = self.pair(wi, wo);
+        only_where(above(wi, wo), self.value(&pair, &self.lobe(wo.z)))
     }
 
     #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-        let up = above(wi, wo);
-        let (wi, wo) = (self.in_axes(wi), self.in_axes(wo));
-        let mut density = self.facet_density(wo, &Half::new(wi, wo));
-        if let Some(average) = self.interreflection {
-            let p = self.lobe(wi.z, wo.z, average).probability;
-            density = p.lerp(density, cosine_density(wi));
-        }
-        R::select(up, density, R::zero())
+        let density = self.density(&self.pair(wi, wo), &self.lobe(wo.z));
+        R::select(above(wi, wo), density, R::zero())
+    }
+
+    #[inline(always)]
+    fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+        let (up, pair, lobe) = (above(wi, wo), self.pair(wi, wo), self.lobe(wo.z));
+        (
+            only_where(up, self.value(&pair, &lobe)),
+            R::select(up, self.density(&pair, &lobe), R::zero()),
+        )
     }
 
     #[inline(always)]
@@ -329,18 +375,15 @@ impl<R: Real, const N: usize> Brdf<R, N> for TorranceSparrow<R, N> {
             Shape::Ggx => d.sample_visible_ggx(local, u[0], u[1]),
             Shape::Beckmann | Shape::BlinnPhong => d.sample_normal(u[0], u[1]),
         };
-        // A normal turned away from ωr reflects nothing.
-        let down = Vec3::new(R::zero(), R::zero(), -R::one());
-        let seen = local.dot(h).gt(R::zero());
-        let mut wi = Vec3::select(seen, local.reflect(h), down);
-        if let Some(average) = self.interreflection {
-            let p = self.lobe(R::one(), wo.z, average).probability;
-            wi = Vec3::select(u[2].lt(p), cosine_hemisphere(u[0], u[1]), wi);
+        let mut wi = mirrored_about(local, h);
+        if let Some(lobe) = self.lobe(wo.z) {
+            let many = cosine_hemisphere([u[0], u[1]]);
+            wi = Vec3::select(u[2].lt(lobe.probability), many, wi);
         }
         if let Some([c, s]) = self.rotation {
             wi = turned(wi, c, s);
         }
-        Sample::continuous(wi, self.eval_cos(wi, wo), self.pdf(wi, wo))
+        self.sample_of(wi, wo)
     }
 
     #[inline(always)]

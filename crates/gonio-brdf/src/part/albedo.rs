@@ -1,7 +1,7 @@
 //! Directional albedo of white microfacet surfaces: by quadrature, and as tables for energy compensation.
 
 use super::distribution::{Distribution, Shape};
-use super::geometry::{Half, polar};
+use super::geometry::Half;
 use super::masking::{Masking, smith_g1_over_cos, visibility};
 use super::special::GAUSS_LEGENDRE_16;
 use gonio_num::{Real, Table1, Table2, Vec3};
@@ -272,12 +272,6 @@ pub fn losses(shape: Shape, masking: Masking) -> &'static Loss {
         Masking::SmithCorrelated => 2,
     };
     &LOSSES[3 * s + m]
-}
-
-/// The direction with cosine `mu` and azimuth 2π·`turn`, for tests and tables.
-#[doc(hidden)]
-pub fn direction(mu: f64, turn: f64) -> Vec3<f64> {
-    polar(mu, (1.0 - mu * mu).max(0.0).sqrt(), turn)
 }
 
 #[cfg(test)]

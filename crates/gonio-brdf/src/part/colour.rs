@@ -2,6 +2,35 @@
 
 use gonio_num::Real;
 
+/// Runs the body once for each component, `$c` = 0, 1, … `$n` − 1, written out for the first four.
+///
+/// Not a loop: a compiler vectorises a loop over the components of lanes along its three steps, a quarter of a register at a
+/// time, instead of along the lanes.
+macro_rules! each_component {
+    ($n:ident, $c:ident => $body:block) => {
+        if $n > 0 {
+            let $c = 0;
+            $body
+        }
+        if $n > 1 {
+            let $c = 1;
+            $body
+        }
+        if $n > 2 {
+            let $c = 2;
+            $body
+        }
+        if $n > 3 {
+            let $c = 3;
+            $body
+        }
+        for $c in 4..$n {
+            $body
+        }
+    };
+}
+pub(crate) use each_component;
+
 /// `x` in every component.
 #[inline(always)]
 pub(crate) fn grey<R: Real, const N: usize>(x: R) -> [R; N] {
@@ -12,9 +41,7 @@ pub(crate) fn grey<R: Real, const N: usize>(x: R) -> [R; N] {
 #[inline(always)]
 pub(crate) fn add<R: Real, const N: usize>(a: [R; N], b: [R; N]) -> [R; N] {
     let mut out = a;
-    for k in 0..N {
-        out[k] = a[k] + b[k];
-    }
+    each_component!(N, k => { out[k] = a[k] + b[k]; });
     out
 }
 
@@ -22,9 +49,7 @@ pub(crate) fn add<R: Real, const N: usize>(a: [R; N], b: [R; N]) -> [R; N] {
 #[inline(always)]
 pub(crate) fn mul<R: Real, const N: usize>(a: [R; N], b: [R; N]) -> [R; N] {
     let mut out = a;
-    for k in 0..N {
-        out[k] = a[k] * b[k];
-    }
+    each_component!(N, k => { out[k] = a[k] * b[k]; });
     out
 }
 
@@ -32,9 +57,7 @@ pub(crate) fn mul<R: Real, const N: usize>(a: [R; N], b: [R; N]) -> [R; N] {
 #[inline(always)]
 pub(crate) fn scale<R: Real, const N: usize>(a: [R; N], s: R) -> [R; N] {
     let mut out = a;
-    for x in &mut out {
-        *x = *x * s;
-    }
+    each_component!(N, k => { out[k] = a[k] * s; });
     out
 }
 
@@ -42,9 +65,7 @@ pub(crate) fn scale<R: Real, const N: usize>(a: [R; N], s: R) -> [R; N] {
 #[inline(always)]
 pub(crate) fn only_where<R: Real, const N: usize>(mask: R::Mask, a: [R; N]) -> [R; N] {
     let mut out = a;
-    for x in &mut out {
-        *x = R::select(mask, *x, R::zero());
-    }
+    each_component!(N, k => { out[k] = R::select(mask, a[k], R::zero()); });
     out
 }
 
@@ -52,9 +73,7 @@ pub(crate) fn only_where<R: Real, const N: usize>(mask: R::Mask, a: [R; N]) -> [
 #[inline(always)]
 pub(crate) fn mean<R: Real, const N: usize>(a: [R; N]) -> R {
     let mut sum = R::zero();
-    for x in a {
-        sum = sum + x;
-    }
+    each_component!(N, k => { sum = sum + a[k]; });
     sum * R::lit(1.0 / N as f64)
 }
 
@@ -62,9 +81,7 @@ pub(crate) fn mean<R: Real, const N: usize>(a: [R; N]) -> R {
 #[inline(always)]
 pub(crate) fn largest<R: Real, const N: usize>(a: [R; N]) -> R {
     let mut out = a[0];
-    for x in a {
-        out = out.max(x);
-    }
+    each_component!(N, k => { out = out.max(a[k]); });
     out
 }
 

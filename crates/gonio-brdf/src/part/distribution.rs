@@ -1,8 +1,9 @@
 //! Distributions of microfacet normals: density, and sampling with exact densities.
 
-use super::geometry::polar;
 use super::special::{exp_m1, ln_1p};
 use gonio_num::{Real, Vec3};
+use gonio_radiometry::warp::around_axis;
+use std::f64::consts::FRAC_1_PI;
 
 /// Which distribution of normals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,19 +47,26 @@ impl<R: Real> Distribution<R> {
     #[inline(always)]
     pub fn density(&self, h: Vec3<R>) -> R {
         let (ax, ay) = (self.alpha_x, self.alpha_y);
-        let norm = (R::pi() * ax * ay).recip();
-        let z2 = (h.z * h.z).max(R::lit(1e-12));
-        let (ex, ey) = ((h.x / ax).sq(), (h.y / ay).sq());
         let d = match self.shape {
-            // e ≥ 1 for unit h, as no α is above 1.
-            Shape::Ggx => norm / (ex + ey + h.z * h.z).max(R::lit(0.5)).sq(),
-            Shape::Beckmann => norm * (-((ex + ey) / z2)).exp() / (z2 * z2),
+            Shape::Ggx => {
+                // With s = αx αy and q = s² e: s³/(π q²), one division. e ≥ 1 for unit h, as no α is above 1.
+                let s = ax * ay;
+                let q = (h.x * ay).sq() + (h.y * ax).sq() + (h.z * s).sq();
+                let q = q.max(R::lit(0.5) * s * s);
+                R::lit(FRAC_1_PI) * (s * s * s) / (q * q)
+            }
+            Shape::Beckmann => {
+                let z2 = (h.z * h.z).max(R::lit(1e-12));
+                let e = (h.x / ax).sq() + (h.y / ay).sq();
+                (-(e / z2)).exp() / (R::pi() * ax * ay * (z2 * z2))
+            }
             Shape::BlinnPhong => {
                 // (p/2) tan²θ-weighted: h.zᵖ = exp(−p/2 · ln(1 + tan²θ)), which keeps its digits near the pole.
+                let z2 = (h.z * h.z).max(R::lit(1e-12));
                 let sin2 = h.x * h.x + h.y * h.y;
-                let weighted = ex + ey - sin2; // = sin²θ · p/2
+                let weighted = (h.x / ax).sq() + (h.y / ay).sq() - sin2; // = sin²θ · p/2
                 let half_p = weighted / sin2.max(R::lit(1e-30));
-                norm * (-(half_p * ln_1p(sin2 / z2))).exp()
+                (-(half_p * ln_1p(sin2 / z2))).exp() / (R::pi() * ax * ay)
             }
         };
         R::select(h.z.gt(R::zero()), d, R::zero())
@@ -77,7 +85,7 @@ impl<R: Real> Distribution<R> {
             Shape::Beckmann => slopes(ax, ay, (-rest.ln()).safe_sqrt(), u0),
             Shape::BlinnPhong => {
                 // tanφ = (αy/αx) tan 2πu0; then cosθ = (1 − u1)^(1/(p + 2)), p + 2 = 2 (cos²φ/αx² + sin²φ/αy²).
-                let d = polar(R::zero(), R::one(), u0);
+                let d = around_axis(u0, R::one(), R::zero());
                 let (x, y) = (ax * d.x, ay * d.y);
                 let over = (x * x + y * y).max(R::lit(1e-30)).sqrt().recip();
                 let (cos, sin) = (x * over, y * over);
@@ -100,7 +108,7 @@ impl<R: Real> Distribution<R> {
         let std = Vec3::new(ax * w.x, ay * w.y, w.z).normalize();
         let z = (R::one() - u1) * (R::one() + std.z) - std.z;
         let sin = (R::one() - z * z).safe_sqrt();
-        let h = polar(z, sin, u0) + std;
+        let h = around_axis(u0, sin, z) + std;
         let n = Vec3::new(ax * h.x, ay * h.y, h.z.max(R::zero()));
         // Only a grazing w at the cap's rim gives a zero vector; the normal then is +z.
         let length2 = n.length_squared();
@@ -123,13 +131,34 @@ impl<R: Real> Distribution<R> {
 /// The normal with slopes r (αx cos 2πu, αy sin 2πu).
 #[inline(always)]
 fn slopes<R: Real>(alpha_x: R, alpha_y: R, r: R, u: R) -> Vec3<R> {
-    let d = polar(R::one(), r, u);
+    let d = around_axis(u, r, R::one());
     Vec3::new(alpha_x * d.x, alpha_y * d.y, R::one()).normalize()
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+
+    /// ∫ f dh over the hemisphere: `rings` midpoints of t = tanθ/(1 + tanθ), which spreads the peak, times `turns` of φ.
+    pub(in crate::part) fn hemisphere_sum(
+        rings: u32,
+        turns: u32,
+        f: impl Fn(Vec3<f64>) -> f64,
+    ) -> f64 {
+        let mut sum = 0.0;
+        for i in 0..rings {
+            let t = (f64::from(i) + 0.5) / f64::from(rings);
+            let tan = t / (1.0 - t);
+            let cos = 1.0 / (1.0 + tan * tan).sqrt();
+            let sin = tan * cos;
+            let d_theta = cos * cos / (1.0 - t).powi(2) / f64::from(rings);
+            for j in 0..turns {
+                let h = around_axis((f64::from(j) + 0.5) / f64::from(turns), sin, cos);
+                sum += f(h) * sin * d_theta;
+            }
+        }
+        sum * std::f64::consts::TAU / f64::from(turns)
+    }
 
     fn all(alpha_x: f64, alpha_y: f64) -> [Distribution<f64>; 3] {
         [Shape::Beckmann, Shape::Ggx, Shape::BlinnPhong].map(|shape| Distribution {
@@ -143,21 +172,7 @@ mod tests {
     fn projected_area_is_one() {
         for (ax, ay) in [(0.1, 0.1), (0.5, 0.2), (1.0, 1.0)] {
             for d in all(ax, ay) {
-                // Midpoint rule; t = tanθ/(1 + tanθ) spreads the peak.
-                let (n, m) = (4000, 128);
-                let mut sum = 0.0;
-                for i in 0..n {
-                    let t = (f64::from(i) + 0.5) / f64::from(n);
-                    let tan = t / (1.0 - t);
-                    let cos = 1.0 / (1.0 + tan * tan).sqrt();
-                    let sin = tan * cos;
-                    let d_theta = cos * cos / (1.0 - t).powi(2) / f64::from(n);
-                    for j in 0..m {
-                        let h = polar(cos, sin, (f64::from(j) + 0.5) / f64::from(m));
-                        sum += d.density(h) * cos * sin * d_theta * std::f64::consts::TAU
-                            / f64::from(m);
-                    }
-                }
+                let sum = hemisphere_sum(4000, 128, |h| d.density(h) * h.z);
                 assert!((sum - 1.0).abs() < 1e-5, "{d:?}: {sum}");
             }
         }

@@ -1,6 +1,6 @@
 //! Fresnel reflectance of unpolarised light (T17).
 
-use super::colour::{cast, grey};
+use super::colour::{cast, each_component, grey};
 use super::special::GAUSS_LEGENDRE_16;
 use crate::model::components;
 use crate::{BrdfError, ModelSpec, ParameterInfo, part::metal};
@@ -52,11 +52,10 @@ pub fn conductor<R: Real>(cos: R, eta: R, k: R) -> R {
     let a = ((a2b2 + t0) * R::lit(0.5)).max(tiny).sqrt();
     let t1 = a2b2 + cos2;
     let t2 = R::lit(2.0) * a * cos;
-    let s = (t1 - t2) / (t1 + t2).max(tiny);
     let t3 = cos2 * a2b2 + sin2 * sin2;
     let t4 = t2 * sin2;
-    let p = s * (t3 - t4) / (t3 + t4).max(tiny);
-    (s + p) * R::lit(0.5)
+    // r⊥² = (t1 − t2)/(t1 + t2) and r∥² = r⊥² (t3 − t4)/(t3 + t4): their mean with one division.
+    (t1 - t2) * t3 / ((t1 + t2) * (t3 + t4)).max(R::lit(1e-30))
 }
 
 /// One of the reflectances above, with its constants.
@@ -90,19 +89,14 @@ impl<R: Real, const N: usize> Fresnel<R, N> {
         match *self {
             Self::None => grey(R::one()),
             Self::Schlick { f0 } => {
-                let w = (R::one() - cos).saturate().pow5();
                 let mut out = f0;
-                for x in &mut out {
-                    *x = *x + (R::one() - *x) * w;
-                }
+                each_component!(N, k => { out[k] = schlick(cos, f0[k], R::one()); });
                 out
             }
             Self::Dielectric { ior } => grey(dielectric(cos, ior)),
             Self::Conductor { eta, k } => {
                 let mut out = eta;
-                for c in 0..N {
-                    out[c] = conductor(cos, eta[c], k[c]);
-                }
+                each_component!(N, c => { out[c] = conductor(cos, eta[c], k[c]); });
                 out
             }
         }

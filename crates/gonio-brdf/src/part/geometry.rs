@@ -1,4 +1,4 @@
-//! Directions of the local frame: horizon, half vector, cosine-distributed directions.
+//! Directions of the local frame: horizon, half vector, mirror images.
 
 use gonio_num::{Real, Vec3};
 
@@ -49,25 +49,11 @@ pub fn mirrored<R: Real>(wo: Vec3<R>) -> Vec3<R> {
     Vec3::new(-wo.x, -wo.y, wo.z)
 }
 
-/// A direction of the upper hemisphere with density cosθ/π, from a point in the unit square.
-///
-/// θ = asin √u₁, φ = 2π u₀ (Malley's method in polar form).
+/// `wo` mirrored about the half vector `h`; −z, which is no direction to the light, where `h` is turned away from `wo`.
 #[inline(always)]
-pub fn cosine_hemisphere<R: Real>(u0: R, u1: R) -> Vec3<R> {
-    polar((R::one() - u1).safe_sqrt(), u1.safe_sqrt(), u0)
-}
-
-/// Density of [`cosine_hemisphere`]: max(z, 0)/π.
-#[inline(always)]
-pub fn cosine_density<R: Real>(w: Vec3<R>) -> R {
-    w.z.max(R::zero()) * R::lit(std::f64::consts::FRAC_1_PI)
-}
-
-/// The direction with the given cosine and sine of θ and φ = 2π·turn.
-#[inline(always)]
-pub fn polar<R: Real>(cos: R, sin: R, turn: R) -> Vec3<R> {
-    let (s, c) = (turn * R::lit(std::f64::consts::TAU)).sin_cos();
-    Vec3::new(sin * c, sin * s, cos)
+pub fn mirrored_about<R: Real>(wo: Vec3<R>, h: Vec3<R>) -> Vec3<R> {
+    let down = Vec3::new(R::zero(), R::zero(), -R::one());
+    Vec3::select(wo.dot(h).gt(R::zero()), wo.reflect(h), down)
 }
 
 /// `v` turned about the normal by the angle with the given cosine and sine.

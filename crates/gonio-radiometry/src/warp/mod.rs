@@ -45,9 +45,10 @@ pub use triangle::{uniform_triangle, uniform_triangle_density, uniform_triangle_
 use gonio_num::{Real, Vec3};
 use std::f64::consts::TAU;
 
-/// The unit vector of azimuth 2π `u`, with the given z and the given distance from the z axis.
+/// The vector of azimuth 2π `u`, with the given z and the given distance from the z axis: unit if they are the cosine and
+/// sine of θ.
 #[inline(always)]
-fn around_axis<R: Real>(u: R, sin_theta: R, cos_theta: R) -> Vec3<R> {
+pub fn around_axis<R: Real>(u: R, sin_theta: R, cos_theta: R) -> Vec3<R> {
     let (sin_phi, cos_phi) = (u * R::lit(TAU)).sin_cos();
     Vec3::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 }
