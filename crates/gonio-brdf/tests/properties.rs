@@ -91,6 +91,10 @@ fn finite_non_negative_and_zero_below_the_horizon() {
                 let wi = convert(i);
                 let f = model.eval(wi, wo);
                 let pdf: f64 = model.pdf(wi, wo).into();
+                let (f_cos, density) = model.eval_cos_and_pdf(wi, wo);
+                let separate = model.eval_cos(wi, wo).map(Into::<f64>::into);
+                assert_eq!(f_cos.map(Into::into), separate, "{spec}: {i:?} {o:?}");
+                assert_eq!(density.into(), pdf, "{spec}: {i:?} {o:?}");
                 for x in f {
                     let x: f64 = x.into();
                     assert!(x.is_finite() && x >= 0.0, "{spec}: f = {x} at {i:?} {o:?}");

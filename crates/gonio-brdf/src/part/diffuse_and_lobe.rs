@@ -87,7 +87,8 @@ impl<R: Real, const N: usize> DiffuseAndLobe<R, N> {
         only_where(up, add(diffuse, scale(self.specular, lobe)))
     }
 
-    /// pd·`diffuse` + (1 − pd)·`lobe` where `up`, else 0: densities mixed with [`DiffuseAndLobe::diffuse_probability`].
+    /// pd·`diffuse` + (1 − pd)·`lobe` where `up`, else 0: the densities of the two parts, mixed with the probability pd of
+    /// [`DiffuseAndLobe::diffuse_probability`].
     #[inline(always)]
     pub(crate) fn density(&self, up: R::Mask, lobe_gain: R, diffuse: R, lobe: R) -> R {
         let mixed = self.diffuse_probability(lobe_gain).lerp(lobe, diffuse);
