@@ -286,9 +286,7 @@ impl<R: Real, const N: usize> TorranceSparrow<R, N> {
     /// The interreflection lobe towards a viewer at cosine `mu_o`, if there is one.
     #[inline(always)]
     fn lobe(&self, mu_o: R) -> Option<Lobe<R, N>> {
-        let Some(average) = self.interreflection else {
-            return None;
-        };
+        let average = self.interreflection?;
         let d = &self.distribution;
         let table = albedo::losses(d.shape, self.masking);
         let roughness = d.alpha_x.min(d.alpha_y).sqrt();

@@ -86,10 +86,7 @@ impl Vertex<'_> {
             return ([0.0; 3], 0.0);
         }
         let local = self.frame.to_local(wi);
-        (
-            self.model.eval_cos(local, self.wo),
-            self.model.pdf(local, self.wo),
-        )
+        self.model.eval_cos_and_pdf(local, self.wo)
     }
 
     /// Draws a direction by the reflection function: world direction, weight f·|cosθi| / pdf, density.
