@@ -96,6 +96,22 @@ impl BrdfError {
                     _ => format!("`{model}` has no parameters"),
                 },
             }),
+            // The words of a choice are in the message already.
+            Self::Parameter {
+                model,
+                parameter,
+                found,
+                ..
+            } => {
+                let info = crate::registry::find(model).ok()?;
+                let parameter = info.parameters.iter().find(|p| p.name == parameter)?;
+                let crate::Kind::Choice { options, .. } = parameter.kind else {
+                    return None;
+                };
+                let near =
+                    crate::registry::suggest(found.trim_matches('`'), options.iter().copied())?;
+                Some(format!("did you mean `{near}`?"))
+            }
             Self::Syntax { .. } => {
                 Some("write a model as name:key=value,key=value; a colour as r/g/b, #rrggbb or one number".into())
             }

@@ -1,6 +1,6 @@
 //! Parameters: how a model declares them, and the values they take.
 
-use crate::{BrdfError, ModelSpec, registry};
+use crate::{BrdfError, ModelSpec};
 use gonio_radiometry::colour::srgb_decode;
 use std::fmt;
 
@@ -172,9 +172,7 @@ impl ParameterInfo {
                 if options.contains(&word.as_str()) {
                     return Ok(value);
                 }
-                let near = registry::suggest(word, options.iter().copied());
-                let hint = near.map_or(String::new(), |n| format!(" (did you mean `{n}`?)"));
-                Err(self.error(model, format!("`{word}`{hint}")))
+                Err(self.error(model, format!("`{word}`")))
             }
             (Kind::Path, Value::Path(_)) | (Kind::Models, Value::Models(_)) => Ok(value),
             _ => Err(self.error(model, format!("`{value}`"))),

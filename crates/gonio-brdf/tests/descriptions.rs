@@ -101,7 +101,8 @@ fn errors_name_the_parameter_the_value_and_the_range() {
         ("table", vec!["file", "path"]),
         ("table:/nowhere/x.binary", vec!["/nowhere/x.binary"]),
     ] {
-        let message = error(text).to_string();
+        let error = error(text);
+        let message = format!("{error}; {}", error.help().unwrap_or_default());
         for part in parts {
             assert!(message.contains(part), "{text}: {message}");
         }

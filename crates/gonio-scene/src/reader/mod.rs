@@ -39,9 +39,14 @@ fn extension(path: &Path) -> String {
 }
 
 fn unknown_format(path: &Path, extension: &str) -> SceneError {
+    let what = match extension {
+        _ if path.is_dir() => "a folder as a scene".into(),
+        "" => "a scene file without an extension".into(),
+        _ => format!("a scene file with the extension `{extension}`"),
+    };
     SceneError::Unsupported {
         path: path.to_owned(),
-        what: format!("a scene file with the extension `{extension}`"),
+        what,
         help: format!("Gonio reads .{}", EXTENSIONS.join(", .")),
     }
 }

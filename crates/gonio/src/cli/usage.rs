@@ -7,7 +7,11 @@ use clap::{Command, CommandFactory};
 /// An error that clap found.
 pub(crate) fn of_arguments<C: CommandFactory>(error: &clap::Error) -> Failure {
     let command = C::command();
-    let words: Vec<String> = std::env::args().skip(1).collect();
+    // Words that are not Unicode are no subcommands, and no reason to panic.
+    let words: Vec<String> = std::env::args_os()
+        .skip(1)
+        .map(|word| word.to_string_lossy().into_owned())
+        .collect();
     Failure::usage(message(error)).with_help(help(error, &command, &words))
 }
 

@@ -44,7 +44,10 @@ fn slips_of_the_pen_are_understood() {
             vec!["brdf", "show", "oren-nayer"],
             "did you mean `oren-nayar`?",
         ),
-        (vec!["brdf", "check", "ggx:metal=glod"], "gold"),
+        (
+            vec!["brdf", "check", "ggx:metal=glod"],
+            "did you mean `gold`?",
+        ),
         (
             vec!["env", "info", "uniform:1", "--env-layout", "anguler"],
             "did you mean \"angular\"?",
@@ -186,4 +189,42 @@ fn every_subcommand_has_help_with_an_example_and_json() {
     }
     assert!(place.good(&["--version"]).out.starts_with("gonio "));
     assert!(place.good(&["--help"]).out.contains("4 interrupted"));
+}
+
+#[cfg(unix)]
+#[test]
+fn words_that_are_not_unicode() {
+    use crate::support::said;
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let place = Place::new();
+    let word = OsStr::from_bytes(b"caf\xe9.toml");
+    for (before, code) in [
+        (&["render"][..], 3),
+        (&["render", "--env"], 2),
+        (&[], 2),
+        (&["render", "--spp"], 2),
+    ] {
+        let output = place.command(before).arg(word).output().unwrap();
+        let said = said(output, before);
+        assert_eq!(said.code, code, "{said:?}");
+        assert!(
+            said.err.starts_with("error: ") && said.err.contains("\nhelp: "),
+            "{said:?}"
+        );
+    }
+    // A picture may have such a name.
+    std::fs::rename(
+        place
+            .path()
+            .join(place.write("ball.toml", crate::support::BALL)),
+        place.path().join(word),
+    )
+    .unwrap();
+    let output = place
+        .command(&["render", "--size", "4x4", "--spp", "1"])
+        .arg(word)
+        .output()
+        .unwrap();
+    assert_eq!(said(output, &[]).code, 0);
 }

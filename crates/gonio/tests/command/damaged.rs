@@ -42,7 +42,7 @@ fn missing_files() {
         &["did you mean 'helmet.glb'?"],
     );
     place.bad(&["render", "helmt.glb"], 3, &["did you mean 'helmet.glb'?"]);
-    place.bad(&["render", "."], 3, &[]);
+    place.bad(&["render", "."], 3, &["folder"]);
     place.bad(&["render", "helmet.fbx"], 3, &["helmet.fbx"]);
 }
 
