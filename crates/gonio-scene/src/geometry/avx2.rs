@@ -10,6 +10,8 @@
 #![allow(unsafe_code)]
 
 use super::kernel::{BEYOND, Eight, Kernel};
+use super::mesh_tree::MeshTree;
+use super::nearest::Nearest;
 use super::tree::{Node, WIDTH};
 use super::triangle::{TriangleBlock, TriangleRay};
 use super::walk::BoxRay;
@@ -208,5 +210,30 @@ impl Kernel for Avx2 {
             // SAFETY: invariant 3.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(start.wrapping_add(64 * line)) };
         }
+    }
+
+    #[inline(always)]
+    fn search_mesh<const ANY: bool>(
+        self,
+        tree: &MeshTree,
+        ray: &Ray,
+        boxes: &BoxRay,
+        instance: u32,
+        nearest: &mut Nearest,
+    ) -> bool {
+        #[inline(never)]
+        #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+        fn run<const ANY: bool>(
+            kernel: Avx2,
+            tree: &MeshTree,
+            ray: &Ray,
+            boxes: &BoxRay,
+            instance: u32,
+            nearest: &mut Nearest,
+        ) -> bool {
+            tree.search::<Avx2, ANY>(kernel, ray, boxes, instance, nearest)
+        }
+        // SAFETY: invariant 1.
+        unsafe { run::<ANY>(self, tree, ray, boxes, instance, nearest) }
     }
 }

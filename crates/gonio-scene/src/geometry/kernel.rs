@@ -1,5 +1,8 @@
 //! [`Kernel`], the two tests that ray queries spend their time in, and their portable form.
 
+use super::Ray;
+use super::mesh_tree::MeshTree;
+use super::nearest::Nearest;
 use super::tree::{Node, WIDTH};
 use super::triangle::{LANES, TriangleBlock, TriangleRay};
 use super::walk::BoxRay;
@@ -28,6 +31,15 @@ pub(crate) trait Kernel: Copy {
     fn triangles(self, block: &TriangleBlock, ray: &Self::Triangles, t_max: f32) -> u32;
     /// Announces that `item` will be read.
     fn prefetch<T>(self, item: &T);
+    /// [`MeshTree::search`], compiled for this kernel as a function of its own: its loop then has all registers to itself.
+    fn search_mesh<const ANY: bool>(
+        self,
+        tree: &MeshTree,
+        ray: &Ray,
+        boxes: &BoxRay,
+        instance: u32,
+        nearest: &mut Nearest,
+    ) -> bool;
 }
 
 /// The relative margin by which a corner may lie beyond t_max and yet be tested: more than the roundings of its t.
@@ -123,4 +135,16 @@ impl Kernel for Portable {
 
     #[inline(always)]
     fn prefetch<T>(self, _: &T) {}
+
+    #[inline(never)]
+    fn search_mesh<const ANY: bool>(
+        self,
+        tree: &MeshTree,
+        ray: &Ray,
+        boxes: &BoxRay,
+        instance: u32,
+        nearest: &mut Nearest,
+    ) -> bool {
+        tree.search::<Self, ANY>(self, ray, boxes, instance, nearest)
+    }
 }

@@ -56,13 +56,15 @@ impl MeshTree {
         self.tree.bytes() + self.blocks.len() * size_of::<TriangleBlock>()
     }
 
-    /// Looks for triangles along `ray`, given in the mesh's coordinates; `nearest` holds the best so far, of any instance.
+    /// Looks for triangles along `ray`, given in the mesh's coordinates, with `boxes` prepared for a box around the mesh, or a
+    /// larger one; `nearest` holds the best so far, of any instance.
     /// Returns whether the search is over: only if `ANY` and something was found.
     #[inline(always)]
     pub(crate) fn search<K: Kernel, const ANY: bool>(
         &self,
         kernel: K,
         ray: &Ray,
+        boxes: &BoxRay,
         instance: u32,
         nearest: &mut Nearest,
     ) -> bool {
@@ -76,8 +78,7 @@ impl MeshTree {
             nearest,
             found: false,
         };
-        let boxes = BoxRay::new(ray.origin, ray.direction, &self.tree.bounds);
-        walk(kernel, &self.tree, &boxes, &mut visitor);
+        walk(kernel, &self.tree, boxes, &mut visitor);
         ANY && visitor.found
     }
 }

@@ -15,6 +15,7 @@ mod placed;
 mod query;
 mod sample;
 mod shape;
+mod stack;
 mod surface;
 #[cfg(test)]
 mod tests;

@@ -104,9 +104,6 @@ impl Placed {
     /// A ray in the shape's coordinates, rounded to single precision; t counts as in the world.
     #[inline(always)]
     pub(crate) fn ray_to_mesh(&self, ray: &Ray) -> Ray {
-        if self.identity {
-            return *ray;
-        }
         let (origin, direction) = self.ray_to_object(ray);
         Ray {
             origin: origin.to_f32(),

@@ -60,14 +60,22 @@ impl Geometry {
     /// Both queries, for any kernel.
     #[inline(always)]
     pub(super) fn search<K: Kernel, const ANY: bool>(&self, kernel: K, ray: &Ray) -> Nearest {
+        let nearest = Nearest::none(ray.t_max);
+        if !ray.is_valid() {
+            return nearest;
+        }
+        let boxes = BoxRay::new(ray.origin, ray.direction, &self.top.bounds);
         let mut visitor = Instances::<K, ANY> {
             kernel,
             geometry: self,
             ray,
-            nearest: Nearest::none(ray.t_max),
+            boxes: &boxes,
+            nearest,
         };
-        if ray.is_valid() {
-            let boxes = BoxRay::new(ray.origin, ray.direction, &self.top.bounds);
+        if self.order.len() == 1 {
+            // A mesh's own tree begins with the box around it.
+            visitor.leaf(0, 1);
+        } else {
             walk(kernel, &self.top, &boxes, &mut visitor);
         }
         visitor.nearest
@@ -78,6 +86,7 @@ struct Instances<'a, K: Kernel, const ANY: bool> {
     kernel: K,
     geometry: &'a Geometry,
     ray: &'a Ray,
+    boxes: &'a BoxRay,
     nearest: Nearest,
 }
 
@@ -96,15 +105,20 @@ impl<K: Kernel, const ANY: bool> Visitor for Instances<'_, K, ANY> {
             let placed = &self.geometry.placed[instance as usize];
             let found = match placed.kind {
                 Kind::Mesh(tree) => {
-                    let ray = placed.ray_to_mesh(self.ray);
-                    // Overflow or underflow on the way there: nothing can be seen.
-                    ray.is_valid()
-                        && self.geometry.trees[tree as usize].search::<K, ANY>(
-                            self.kernel,
-                            &ray,
-                            instance,
-                            &mut self.nearest,
-                        )
+                    let tree = &self.geometry.trees[tree as usize];
+                    let nearest = &mut self.nearest;
+                    if placed.identity {
+                        let (kernel, boxes) = (self.kernel, self.boxes);
+                        kernel.search_mesh::<ANY>(tree, self.ray, boxes, instance, nearest)
+                    } else {
+                        let ray = placed.ray_to_mesh(self.ray);
+                        let boxes = BoxRay::new(ray.origin, ray.direction, &tree.tree.bounds);
+                        // Overflow or underflow on the way there: nothing can be seen.
+                        ray.is_valid()
+                            && self
+                                .kernel
+                                .search_mesh::<ANY>(tree, &ray, &boxes, instance, nearest)
+                    }
                 }
                 Kind::Sphere => {
                     let (o, d) = placed.ray_to_object(self.ray);

@@ -2,6 +2,7 @@
 
 use super::Aabb;
 use super::kernel::Kernel;
+use super::stack::{Entry, Stack};
 use super::tree::{LEAF, WIDTH, WideTree, leaf_items};
 use gonio_num::Vec3;
 
@@ -80,15 +81,6 @@ fn announce<K: Kernel, V: Visitor>(kernel: K, tree: &WideTree, visitor: &V, chil
     }
 }
 
-/// Entries kept without allocation. A million triangles need about 60.
-const STACK: usize = 96;
-
-#[derive(Debug, Clone, Copy)]
-struct Entry {
-    near: f32,
-    child: u32,
-}
-
 /// Walks the leaves that the ray may hit, roughly by distance.
 #[inline(always)]
 pub(crate) fn walk<K: Kernel, V: Visitor>(
@@ -100,26 +92,14 @@ pub(crate) fn walk<K: Kernel, V: Visitor>(
     if tree.nodes.is_empty() {
         return;
     }
-    let vacant = Entry {
-        near: 0.0,
-        child: 0,
-    };
-    let mut fixed = [vacant; STACK];
-    let mut large = Vec::new();
-    let stack: &mut [Entry] = if tree.stack <= STACK {
-        &mut fixed
-    } else {
-        large.resize(tree.stack, vacant);
-        &mut large
-    };
+    let mut stack = Stack::new();
     let prepared = kernel.prepare_boxes(ray);
-    let mut top = 0;
     let mut current = 0u32;
     loop {
         if current & LEAF == 0 {
             let node = &tree.nodes[current as usize];
-            let (hits, near) = kernel.boxes(node, &prepared, visitor.t_max());
-            let mut hits = hits & node.valid;
+            // A vacant child's box lies inside out, so no ray meets it.
+            let (mut hits, near) = kernel.boxes(node, &prepared, visitor.t_max());
             if hits != 0 {
                 let i = hits.trailing_zeros() as usize % WIDTH;
                 hits &= hits - 1;
@@ -128,8 +108,8 @@ pub(crate) fn walk<K: Kernel, V: Visitor>(
                     continue;
                 }
                 announce(kernel, tree, visitor, current);
-                let base = top;
                 let mut nearest = near.0[i];
+                let mut others = 0;
                 while hits != 0 {
                     let j = hits.trailing_zeros() as usize % WIDTH;
                     hits &= hits - 1;
@@ -138,23 +118,15 @@ pub(crate) fn walk<K: Kernel, V: Visitor>(
                         child: node.children[j],
                     };
                     announce(kernel, tree, visitor, entry.child);
-                    if V::ANY {
-                        stack[top] = entry;
-                        top += 1;
-                        continue;
-                    }
-                    if entry.near < nearest {
+                    if !V::ANY && entry.near < nearest {
                         std::mem::swap(&mut entry.near, &mut nearest);
                         std::mem::swap(&mut entry.child, &mut current);
                     }
-                    // Insertion keeps the farthest deepest.
-                    let mut k = top;
-                    while k > base && stack[k - 1].near < entry.near {
-                        stack[k] = stack[k - 1];
-                        k -= 1;
-                    }
-                    stack[k] = entry;
-                    top += 1;
+                    stack.push(entry);
+                    others += 1;
+                }
+                if !V::ANY && others > 1 {
+                    stack.sort_last(others);
                 }
                 continue;
             }
@@ -166,14 +138,11 @@ pub(crate) fn walk<K: Kernel, V: Visitor>(
         }
         // The next entry that may still hold something nearer, or as near.
         loop {
-            if top == 0 {
-                return;
-            }
-            top -= 1;
-            if V::ANY || stack[top].near <= visitor.t_max() {
+            let Some(entry) = stack.pop() else { return };
+            if V::ANY || entry.near <= visitor.t_max() {
+                current = entry.child;
                 break;
             }
         }
-        current = stack[top].child;
     }
 }
