@@ -60,7 +60,11 @@ fn panorama() -> Environment {
         let shine = f64::from(u8::from(toward > rim));
         std::array::from_fn(|c| {
             let sky = (1.0 - up) * [0.9, 0.85, 0.8][c] + up * [0.18, 0.35, 0.8][c];
-            let base = if d.y > 0.0 { sky } else { [0.20, 0.16, 0.12][c] };
+            let base = if d.y > 0.0 {
+                sky
+            } else {
+                [0.20, 0.16, 0.12][c]
+            };
             let sunlight = shine * [6000.0, 5400.0, 4500.0][c] + glow * [3.0, 2.7, 2.2][c];
             (base + sunlight) as f32
         })
@@ -112,7 +116,9 @@ fn cornell() -> (Scene, Camera) {
     let white_spec = "lambertian:reflectance=0.885809/0.698859/0.666422";
     let white = scene.material(material(white_spec));
     let green = scene.material(material("lambertian:reflectance=0.105421/0.37798/0.076425"));
-    let red = scene.material(material("lambertian:reflectance=0.570068/0.0430135/0.0443706"));
+    let red = scene.material(material(
+        "lambertian:reflectance=0.570068/0.0430135/0.0443706",
+    ));
     let mut lamp = material(white_spec);
     lamp.emission.radiance = [18.387, 13.9873, 6.75357];
     let lamp = scene.material(lamp);

@@ -1,6 +1,6 @@
 //! Path tracing: the reflection equation, applied again to the light that other surfaces reflect (Kajiya 1986).
 
-use super::vertex::{Vertex, arrive, environment_radiance};
+use super::vertex::{Vertex, arrive};
 use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
 use gonio_radiometry::sequence::SampleStream;
 use gonio_scene::Scene;
@@ -40,12 +40,15 @@ impl Path {
         let mut throughput = [1.0; 3];
         for bounce in 0..self.max_bounces {
             let base = dimension::of_bounce(bounce);
-            stream.seek(base);
-            let choice = stream.next_1d();
-            let position = stream.next_2d();
-            if !vertex.model.is_delta()
-                && let Some(light) = scene.lights.sample(&vertex.point, choice, position)
-            {
+            let light = if vertex.model.is_delta() {
+                None
+            } else {
+                stream.seek(base);
+                let choice = stream.next_1d();
+                let position = stream.next_2d();
+                scene.lights.sample(&vertex.point, choice, position)
+            };
+            if let Some(light) = light {
                 let direct = vertex.reflect_light(scene, &light, counts, |density| {
                     if light.delta {
                         1.0
@@ -74,11 +77,9 @@ impl Path {
             };
             match arrive(scene, &ray, stream, counts) {
                 None => {
-                    let radiance = environment_radiance(scene, drawn.wi);
-                    if radiance != [0.0; 3] {
-                        let w = weight(scene.lights.pdf_environment(drawn.wi));
-                        total = sum(total, scaled(product(throughput, radiance), w));
-                    }
+                    let (radiance, density) = scene.lights.environment_radiance_and_pdf(drawn.wi);
+                    let light = scaled(product(throughput, radiance), weight(density));
+                    total = sum(total, light);
                     break;
                 }
                 Some(next) => {

@@ -1,5 +1,6 @@
 //! [`Placed`], an instance ready for queries.
 
+use super::surface::{Axes, Local};
 use super::{Aabb, Instance, Ray, Shape};
 use crate::SceneError;
 use gonio_num::{Affine3, Vec3};
@@ -17,6 +18,8 @@ pub(crate) struct Placed {
     pub(crate) identity: bool,
     /// −1 for a map that mirrors, else 1.
     pub(crate) handedness: f32,
+    /// The directions at every point, for a flat shape.
+    pub(super) flat: Option<Axes>,
     /// The box in the world, with room for the roundings of a ray's change of coordinates.
     pub(crate) bounds: Aabb,
     /// Largest coordinate of the shape in its own coordinates, times the most that a vector grows from there to the world (a
@@ -81,15 +84,20 @@ impl Placed {
         } else {
             1.0
         };
-        Ok(Self {
+        let mut placed = Self {
             kind,
             to_world,
             to_object,
             identity,
             handedness,
+            flat: None,
             bounds,
             object_magnitude,
-        })
+        };
+        if matches!(kind, Kind::Rectangle | Kind::Disk) {
+            placed.flat = Some(placed.axes(&Local::flat(0.0, 0.0)));
+        }
+        Ok(placed)
     }
 
     /// Origin and direction of a ray in the shape's coordinates.

@@ -103,6 +103,15 @@ pub(super) struct Local {
     colour: [f32; 4],
 }
 
+/// The directions at a point of a surface, as [`SurfacePoint`] has them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Axes {
+    ng: Vec3<f32>,
+    ns: Vec3<f32>,
+    tangent: Vec3<f32>,
+    bitangent_sign: f32,
+}
+
 impl Local {
     fn plain(p: Vec3<f64>, ng: Vec3<f64>, tangent: Vec3<f64>, uv: [f64; 2]) -> Self {
         Self {
@@ -119,13 +128,15 @@ impl Local {
 
     pub(super) fn sphere(p: Vec3<f64>) -> Self {
         let n = p.normalize();
-        let phi = Real::atan2(n.y, n.x);
+        // Texture coordinates are single precision, so angles of single precision will do.
+        let across = (n.x * n.x + n.y * n.y).sqrt() as f32;
+        let phi = f64::from(Real::atan2(n.y as f32, n.x as f32));
         let u = if phi < 0.0 {
             phi / TAU + 1.0
         } else {
             phi / TAU
         };
-        let v = Real::acos(n.z) / PI;
+        let v = f64::from(Real::atan2(across, n.z as f32)) / PI;
         Self::plain(n, n, Vec3::new(-n.y, n.x, 0.0), [u, v])
     }
 
@@ -205,37 +216,57 @@ fn mixed<const N: usize>(
 
 impl Placed {
     /// A shape's point in the world.
+    #[inline]
     pub(super) fn to_surface(&self, local: &Local, hit: &Hit) -> SurfacePoint {
-        let m = &self.to_world;
-        let p = m.transform_point(local.p);
-        let ng = m.transform_normal(local.ng).normalize();
-        let mut sign = local.bitangent_sign * self.handedness;
-        let mut ns = m.transform_normal(local.ns);
-        let length = ns.length();
-        // Normals that cancel, or none at all: the surface's own.
-        ns = if length > 1e-12 * local.ns.length().max(1e-300) && length.is_finite() {
-            ns / length
-        } else {
-            ng
+        let p = self.to_world.transform_point(local.p);
+        let axes = match &self.flat {
+            Some(axes) => *axes,
+            None => self.axes(local),
         };
-        if ns.dot(ng) < 0.0 {
-            ns = -ns;
-            sign = -sign;
-        }
-        let frame = Frame::from_normal_tangent(ns, m.transform_vector(local.tangent));
         SurfacePoint {
             p: p.to_f32(),
             error: self.error_at(p),
-            ng: ng.to_f32(),
-            ns: ns.to_f32(),
-            tangent: frame.s.to_f32(),
-            bitangent_sign: sign,
+            ng: axes.ng,
+            ns: axes.ns,
+            tangent: axes.tangent,
+            bitangent_sign: axes.bitangent_sign,
             uv: local.uv,
             uv1: local.uv1,
             colour: local.colour,
             t: hit.t,
             instance: hit.instance,
             primitive: hit.primitive,
+        }
+    }
+
+    /// The directions at a shape's point, in the world.
+    pub(super) fn axes(&self, local: &Local) -> Axes {
+        let m = &self.to_world;
+        let ng = m.transform_normal(local.ng).normalize();
+        let mut sign = local.bitangent_sign * self.handedness;
+        let mut ns = ng;
+        if local.ns != Vec3::zero() {
+            let bent = m.transform_normal(local.ns);
+            let length = bent.length();
+            // Normals that cancel: the surface's own.
+            if length > 1e-12 * local.ns.length().max(1e-300) && length.is_finite() {
+                ns = bent / length;
+            }
+        }
+        if ns.dot(ng) < 0.0 {
+            ns = -ns;
+            sign = -sign;
+        }
+        let tangent = if local.tangent == Vec3::zero() {
+            Frame::from_normal(ns).s
+        } else {
+            Frame::from_normal_tangent(ns, m.transform_vector(local.tangent)).s
+        };
+        Axes {
+            ng: ng.to_f32(),
+            ns: ns.to_f32(),
+            tangent: tangent.to_f32(),
+            bitangent_sign: sign,
         }
     }
 }

@@ -90,8 +90,8 @@ impl WideTree {
         let boxes: Vec<Bounded> = boxes.into_iter().map(Bounded).collect();
         let mut parameters = BvhBuildParams::medium_build();
         match purpose {
-            // Eight cost as much as one, so that leaves are worth filling: measured, 3 and 8 differ by 8 to 35 % in speed and by
-            // a quarter in memory.
+            // Eight triangles cost as much as one, so leaves are worth filling. Against the default of 3 this was measured to
+            // save 24 to 37 % of the memory, and to be as fast or faster on every set of rays of the bench.
             Purpose::Triangles => parameters.collapse_traversal_cost = 8.0,
             Purpose::Instances => parameters.max_prims_per_leaf = 1,
         }

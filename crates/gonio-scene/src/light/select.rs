@@ -169,6 +169,18 @@ impl Lights {
         }
     }
 
+    /// The environment's radiance \[W m⁻² sr⁻¹] from `wi` together with [`Lights::pdf_environment`], for less than both cost;
+    /// zeros without an environment.
+    pub fn environment_radiance_and_pdf(&self, wi: Vec3<f32>) -> ([f32; 3], f32) {
+        match (self.environment, self.environment()) {
+            (Some(index), Some(e)) => {
+                let (radiance, pdf) = e.radiance_and_pdf(wi);
+                (radiance, self.probability(index) * pdf)
+            }
+            _ => ([0.0; 3], 0.0),
+        }
+    }
+
     /// The probability with which a light is chosen.
     pub fn probability(&self, light: u32) -> f32 {
         self.choice
