@@ -1,6 +1,6 @@
 //! The kernel for processors with AVX2: the same results as [`Portable`](super::kernel::Portable), several times faster.
 //!
-//! The only unsafe code of the crate. Its invariants:
+//! Unsafe code, under these invariants:
 //! 1. An [`Avx2`] exists only where [`Avx2::detect`] found every instruction set that the functions here are compiled
 //!    for; so whoever holds one may run them.
 //! 2. Vector loads read arrays of eight `f32` inside structures of alignment 32 or more, at multiples of 32 bytes.
