@@ -32,3 +32,20 @@ pub use error::RadiometryError;
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// A file of real spectral data, for tests: from the folder that `GONIO_SPECTRAL` names, or from `shared/data/spectral` in or
+/// beside a folder above. The repository does not have it; a test that misses it says so and skips.
+#[cfg(test)]
+fn spectral_data(name: &str) -> Option<std::path::PathBuf> {
+    let given = std::env::var_os("GONIO_SPECTRAL").map(std::path::PathBuf::from);
+    let above = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let found = given
+        .into_iter()
+        .chain(above.map(|folder| folder.join("shared/data/spectral")))
+        .map(|folder| folder.join(name))
+        .find(|file| file.is_file());
+    if found.is_none() {
+        eprintln!("skipped: {name} is absent; GONIO_SPECTRAL names a folder that has it");
+    }
+    found
+}

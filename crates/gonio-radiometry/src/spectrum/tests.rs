@@ -1,20 +1,10 @@
 use super::*;
 use crate::colour::{white_of, xy_of_xyz};
+use crate::spectral_data;
 use gonio_num::dual::Dual;
 use gonio_num::lanes::Lanes;
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use std::path::Path;
-
-/// Real data of the CIE, where a checkout has it beside the sources.
-fn shared(name: &str) -> Option<std::path::PathBuf> {
-    let path = Path::new("/work/shared/data/spectral").join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: {} is absent", path.display());
-    None
-}
 
 #[test]
 fn constants_of_the_si() {
@@ -146,7 +136,7 @@ fn illuminants_are_the_published_tables() {
         (Illuminant::D50, 2e-2),
         (Illuminant::D65, 1e-3),
     ] {
-        let Some(path) = shared(&format!("illuminant_{illuminant}.csv")) else {
+        let Some(path) = spectral_data(&format!("illuminant_{illuminant}.csv")) else {
             return;
         };
         let columns = SpectralColumns::read(&path).unwrap();
@@ -341,7 +331,9 @@ fn broken_files_are_named() {
 
 #[test]
 fn metals_of_the_shared_data_are_read() {
-    let Some(folder) = shared("ior") else { return };
+    let Some(folder) = spectral_data("ior") else {
+        return;
+    };
     let mut count = 0;
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
