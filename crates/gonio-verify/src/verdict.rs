@@ -260,10 +260,7 @@ impl Verdict {
             (true, false) => Outcome::Declared,
         };
         if !violated && !declared_to_hold {
-            self.note = Some(format!(
-                "declared as lacking {}, but no violation was found",
-                self.property
-            ));
+            self.note = Some("not declared to hold, but no violation was found".into());
         }
         self
     }
