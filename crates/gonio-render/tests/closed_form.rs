@@ -271,3 +271,37 @@ fn a_partly_transparent_surface() {
         }
     }
 }
+
+/// A mirror under a black veil of opacity ½, in uniform light of radiance 1: light crosses the veil once on its way in and
+/// once on its way out, and the two are independent, so L = ½ · ½. One random number for both crossings would give ½.
+#[test]
+fn a_path_crosses_a_partly_transparent_surface_twice() {
+    let mut scene = SceneBuilder::new("veiled mirror");
+    let mut veil = material("lambertian:reflectance=0");
+    veil.opacity.factor = 0.5;
+    veil.opacity.mode = gonio_scene::material::AlphaMode::Blend;
+    add(&mut scene, Shape::Rectangle, floor(1.0, 50.0), veil);
+    add(
+        &mut scene,
+        Shape::Rectangle,
+        floor(0.0, 50.0),
+        material("mirror:reflectance=1"),
+    );
+    scene.light(Light::Environment(Environment::uniform([1.0; 3])));
+    let scene = scene.build().unwrap();
+    for integrator in INTEGRATORS {
+        for sampler in SAMPLERS {
+            let film = picture(
+                &scene,
+                &camera_above(4.0, 10.0),
+                &options(integrator, sampler, 16, 32),
+            );
+            assert!(
+                agrees(&film, 0.25, ROUNDING),
+                "{integrator:?} {sampler:?} {}",
+                pixel_moments(&film, 0).mean()
+            );
+            assert!(!agrees(&film, 0.5, ROUNDING), "{integrator:?} {sampler:?}");
+        }
+    }
+}

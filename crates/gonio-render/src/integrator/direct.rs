@@ -56,7 +56,7 @@ impl Direct {
             }
         };
         let ray = vertex.point.spawn_ray(drawn.wi);
-        let (radiance, density) = match arrive(scene, &ray, stream, counts) {
+        let (radiance, density) = match arrive(scene, &ray, 1, stream, counts) {
             None => (
                 environment_radiance(scene, drawn.wi),
                 scene.lights.environment().map_or(0.0, |e| e.pdf(drawn.wi)),

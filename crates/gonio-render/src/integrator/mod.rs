@@ -45,7 +45,7 @@ impl Integrator {
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> FilmSample {
-        match vertex::arrive(scene, ray, stream, counts) {
+        match vertex::arrive(scene, ray, 0, stream, counts) {
             None => FilmSample {
                 radiance: vertex::environment_radiance(scene, ray.direction),
                 first: None,
@@ -116,8 +116,13 @@ pub(crate) mod dimension {
     pub const DIRECTION: u32 = 3;
     /// Offset of Russian roulette's number.
     pub const ROULETTE: u32 = 6;
-    /// Where the numbers begin that decide whether a ray passes a partly transparent surface: far above any bounce.
-    pub const OPACITY: u32 = 1 << 24;
+    /// Partly transparent surfaces that one ray may meet; the last of them counts as opaque.
+    pub const MOST_PASSED: u32 = 256;
+    /// The number that decides whether the ray after `segment` reflections passes its surface number `passed`: far above
+    /// any bounce, and another for each, since one number for two decisions would make them alike.
+    pub const fn of_opacity(segment: u32, passed: u32) -> u32 {
+        (1 << 24) + segment * MOST_PASSED + passed
+    }
     /// Where `direct` begins to draw for its lights, three numbers each.
     pub const LIGHTS: u32 = 1 << 20;
 }

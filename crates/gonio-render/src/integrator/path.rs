@@ -75,7 +75,7 @@ impl Path {
                     power_heuristic(drawn.pdf, light_density)
                 }
             };
-            match arrive(scene, &ray, stream, counts) {
+            match arrive(scene, &ray, bounce + 1, stream, counts) {
                 None => {
                     let (radiance, density) = scene.lights.environment_radiance_and_pdf(drawn.wi);
                     let light = scaled(product(throughput, radiance), weight(density));

@@ -7,9 +7,6 @@ use gonio_radiometry::sequence::SampleStream;
 use gonio_scene::{LightSample, LightTarget, Ray, Scene, SurfacePoint};
 use std::borrow::Cow;
 
-/// Partly transparent surfaces that one ray may pass before it counts as stopped.
-const MAX_PASSED: u32 = 256;
-
 /// A point on a surface with its reflection function, seen from one direction.
 #[derive(Debug, Clone)]
 pub struct Vertex<'a> {
@@ -33,21 +30,24 @@ pub struct Vertex<'a> {
 
 /// Follows `ray` to the first surface that stops it; a surface of opacity α stops it with probability α. Nothing if the
 /// ray goes on to infinity.
+///
+/// - `segment`: how many reflections the path has made, so that each part of it draws numbers of its own
 pub(super) fn arrive<'a>(
     scene: &'a Scene,
     ray: &Ray,
+    segment: u32,
     stream: &mut SampleStream,
     counts: &mut RayCounts,
 ) -> Option<Vertex<'a>> {
     let wo_world = -ray.direction;
     let mut ray = *ray;
     let mut travelled = 0.0;
-    for passed in 0..MAX_PASSED {
+    for passed in 0..dimension::MOST_PASSED {
         counts.nearest += 1;
         let point = scene.intersect(&ray)?;
         let shading = scene.shade(&point, wo_world);
-        if shading.alpha < 1.0 {
-            stream.seek(dimension::OPACITY + passed);
+        if shading.alpha < 1.0 && passed + 1 < dimension::MOST_PASSED {
+            stream.seek(dimension::of_opacity(segment, passed));
             if stream.next_1d() >= shading.alpha {
                 travelled += point.t;
                 let t_max = ray.t_max - point.t;
@@ -103,8 +103,8 @@ impl Vertex<'_> {
         wi.dot(self.point.ng) * self.wo_world.dot(self.point.ng) > 0.0
     }
 
-    /// Light from `sample` reflected toward the viewer, for density `pdf` of choosing it and the weight that
-    /// `weight(density of sampling the same direction by the reflection function)` gives it.
+    /// Light from `sample` reflected toward the viewer, times the weight that `weight` gives it for the density with which
+    /// the reflection function would draw the same direction.
     pub(super) fn reflect_light(
         &self,
         scene: &Scene,
