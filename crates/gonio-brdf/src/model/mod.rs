@@ -53,6 +53,15 @@ macro_rules! models {
             fn albedo_estimate(&self, wo: Vec3<R>) -> R {
                 match self { $(Self::$variant(m) => m.albedo_estimate(wo),)* }
             }
+            fn transmits(&self) -> bool {
+                match self { $(Self::$variant(m) => Brdf::<R, N>::transmits(m),)* }
+            }
+            fn relative_ior(&self) -> [R; N] {
+                match self { $(Self::$variant(m) => m.relative_ior(),)* }
+            }
+            fn absorption(&self) -> [R; N] {
+                match self { $(Self::$variant(m) => m.absorption(),)* }
+            }
         }
 
         impl<R: Number, const N: usize> Model<R, N> {
