@@ -10,8 +10,10 @@ pub mod mirror;
 pub mod oren_nayar;
 pub mod phong;
 pub mod scaled;
+pub mod smooth_dielectric;
 pub mod sum;
 pub mod table;
+pub mod thin_dielectric;
 pub mod toon;
 pub mod torrance_sparrow;
 
@@ -110,6 +112,10 @@ models! {
     OrenNayar: oren_nayar,
     /// Torrance & Sparrow 1967: microfacets (T18).
     TorranceSparrow: torrance_sparrow,
+    /// A smooth boundary into a clear body.
+    SmoothDielectric: smooth_dielectric,
+    /// A thin pane of glass.
+    ThinDielectric: thin_dielectric,
     /// The metallic-roughness material of glTF 2.0.
     Gltf: gltf,
     /// A cartoon shader (T20).
@@ -126,7 +132,7 @@ impl<R: Number, const N: usize> Model<R, N> {
     /// Whether it reflects into discrete directions only: then `eval` and `pdf` are 0 everywhere.
     pub fn is_delta(&self) -> bool {
         match self {
-            Self::Mirror(_) => true,
+            Self::Mirror(_) | Self::SmoothDielectric(_) | Self::ThinDielectric(_) => true,
             Self::Sum(sum) => sum.parts.iter().all(Model::is_delta),
             Self::Scaled(scaled) => scaled.of.is_delta(),
             _ => false,

@@ -77,11 +77,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for SmoothDielectric<R, N> {
         let p = b.reflection_probability(f);
         let reflects = u[2].lt(p);
         let ratio = b.opposite_over_own(inside).recip();
-        let normal = Vec3::new(
-            R::zero(),
-            R::zero(),
-            R::select(inside, -R::one(), R::one()),
-        );
+        let normal = Vec3::new(R::zero(), R::zero(), R::select(inside, -R::one(), R::one()));
         let through = refracted_about(wo, normal, cos, ratio);
         let q = R::one() - p;
         let reflected = scale(b.reflectance, f / p);

@@ -3,6 +3,7 @@
 
 pub mod albedo;
 pub(crate) mod colour;
+pub mod dielectric;
 pub mod diffuse_and_lobe;
 pub mod distribution;
 pub mod fresnel;
