@@ -12,8 +12,8 @@ const COUNT: usize = 4096;
 const MODELS: &[&str] = &[
     "lambertian",
     "oren-nayar",
-    "ggx:interreflection=off",
-    "ggx:metal=gold,interreflection=off",
+    "ggx:interreflection=none",
+    "ggx:metal=gold,interreflection=none",
     "ggx:metal=gold",
     "gltf:metallic=0.5",
 ];

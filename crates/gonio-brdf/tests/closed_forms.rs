@@ -87,7 +87,7 @@ fn torrance_sparrow_at_normal_incidence_is_f0_over_4_pi_alpha_squared() {
     for distribution in ["ggx", "beckmann", "blinn-phong"] {
         for masking in ["smith", "smith-correlated", "v-cavity"] {
             let m = model(&format!(
-                "torrance-sparrow:distribution={distribution},masking={masking},alpha=0.5,f0=0.3,interreflection=off"
+                "torrance-sparrow:distribution={distribution},masking={masking},alpha=0.5,f0=0.3,interreflection=none"
             ));
             assert!(
                 near(m.eval(UP, UP)[0], 0.3 / (4.0 * PI * 0.25)),
@@ -111,7 +111,7 @@ fn rotation_turns_the_brushed_direction() {
 #[test]
 fn gltf_ends_are_its_metal_and_its_dielectric() {
     let metal = model("gltf:base_color=0.9/0.6/0.2,metallic=1,roughness=0.5");
-    let same = model("ggx:f0=0.9/0.6/0.2,roughness=0.5,masking=smith,interreflection=off");
+    let same = model("ggx:f0=0.9/0.6/0.2,roughness=0.5,masking=smith,interreflection=none");
     let (wi, wo) = (tilted(30.0, 20.0), tilted(40.0, 190.0));
     for (f, g) in metal.eval(wi, wo).into_iter().zip(same.eval(wi, wo)) {
         assert!(near(f, g));

@@ -178,8 +178,9 @@ fn reciprocal_where_declared() {
                         (p[k] - q[k]).abs() <= 1e-10 * (p[k] + q[k]),
                         "{spec} {a:?} {b:?}"
                     );
+                    // Below 1e-30 single precision soon has no digits left.
                     assert!(
-                        (f[k] - g[k]).abs() <= 1e-4 * (f[k] + g[k]),
+                        (f[k] - g[k]).abs() <= 1e-4 * (f[k] + g[k]) + 1e-30,
                         "{spec} {a:?} {b:?}"
                     );
                 }
@@ -233,7 +234,8 @@ fn single_precision_agrees_with_double() {
                     }
                 }
                 for k in 0..3 {
-                    let allowed = 1e-4 * g[k] + 2.0 * slack[k] + 1e-30;
+                    // A power of 1e-38 is lost in single precision; factors of up to 1e13 stand beside it.
+                    let allowed = 1e-4 * g[k] + 2.0 * slack[k] + 1e-25;
                     let difference = (f64::from(f[k]) - g[k]).abs();
                     assert!(
                         difference <= allowed,
@@ -358,6 +360,13 @@ fn setting_a_parameter_is_building_with_it() {
                     before.set_text("fresnel", "dielectric").unwrap();
                 }
                 "f0" => before.set_text("fresnel", "schlick").unwrap(),
+                "f82" => before.set_text("fresnel", "f82-tint").unwrap(),
+                "film_thickness_nm" | "film_ior" => {
+                    before.set_text("fresnel", "thin-film").unwrap();
+                }
+                "gamma" => before.set_text("distribution", "student-t").unwrap(),
+                "p" => before.set_text("distribution", "sgd").unwrap(),
+                "c" => before.set_text("distribution", "abc").unwrap(),
                 "eta" | "k" => {
                     before.set_text("eta", "2").unwrap();
                     before.set_text("k", "3").unwrap();

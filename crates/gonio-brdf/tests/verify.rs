@@ -31,7 +31,7 @@ fn microfacets_of_every_kind() {
             ("smith", "alpha_x=0.15,alpha_y=0.6,rotation_deg=30"),
             (
                 "smith-correlated",
-                "roughness=0.9,ior=1.5,interreflection=off",
+                "roughness=0.9,ior=1.5,interreflection=none",
             ),
         ] {
             passes(&format!(

@@ -8,7 +8,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use crate::table::over_lanes;
-use crate::{LoopState, Mask, Real, Table1, Table2, Table3, Vec3, math};
+use crate::{LoopState, Mask, Real, Table1, Table2, Table3, Vec3, Work, dispatch, math};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// `N` numbers of type `f32`, calculated with at once. N = 4, 8 and 16 match today's registers.
@@ -281,6 +281,11 @@ impl<const N: usize> Real for Lanes<N> {
     #[inline(always)]
     fn table3(table: &'static Table3, x: Self, y: Self, z: Self) -> Self {
         over_lanes::lookup3(table, x, y, z)
+    }
+
+    #[inline(always)]
+    fn out_of_line<W: Work>(work: W) -> W::Output {
+        dispatch::run_with_lanes::<N, W>(work)
     }
 
     /// Goes on while any lane does; a lane that has ended keeps its state.

@@ -24,7 +24,7 @@ mod window;
 
 pub use affine::Affine3;
 pub use frame::Frame;
-pub use real::{LoopState, Mask, Real};
+pub use real::{LoopState, Mask, Real, Work};
 pub use table::{Table1, Table2, Table3};
 pub use vec3::Vec3;
 pub use window::window;

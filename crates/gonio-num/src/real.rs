@@ -49,6 +49,14 @@ impl<R: Real, const K: usize> LoopState<R> for [R; K] {
     }
 }
 
+/// A piece of a formula that [`Real::out_of_line`] runs.
+pub trait Work {
+    /// What it gives.
+    type Output;
+    /// Does it; mark it `#[inline(always)]`.
+    fn run(self) -> Self::Output;
+}
+
 /// A real number that formulas are written over.
 ///
 /// Implementations: `f32`, `f64`, [`Lanes`](crate::lanes::Lanes), [`Dual`](crate::dual::Dual) and
@@ -114,6 +122,13 @@ pub trait Real:
     fn table2(table: &'static Table2, x: Self, y: Self) -> Self;
     /// Trilinear interpolation in `table` at (`x`, `y`, `z`), each clamped to [0, 1].
     fn table3(table: &'static Table3, x: Self, y: Self, z: Self) -> Self;
+
+    /// Runs `work` in a function of its own, over lanes one for the instruction set of the machine. Everything else becomes part of the
+    /// kernel that calls it; this is for what is long and seldom needed, or shared by many kernels.
+    #[inline(never)]
+    fn out_of_line<W: Work>(work: W) -> W::Output {
+        work.run()
+    }
 
     /// [`Real::repeat`] over any [`LoopState`].
     fn repeat_state<S: LoopState<Self>>(

@@ -2,7 +2,7 @@
 
 use gonio_num::dispatch::{InstructionSet, Kernel, dispatch, dispatch_on};
 use gonio_num::lanes::{LaneMask, Lanes};
-use gonio_num::{Frame, Mask, Real, Table1, Table2, Table3, Vec3};
+use gonio_num::{Frame, Mask, Real, Table1, Table2, Table3, Vec3, Work};
 use proptest::prelude::*;
 
 static T1: Table1 = Table1 {
@@ -27,7 +27,18 @@ static T3: Table3 = Table3 {
 };
 
 /// How many results [`everything`] gives.
-const RESULTS: usize = 45;
+const RESULTS: usize = 47;
+
+/// Two numbers of three.
+struct Two<R>([R; 3]);
+impl<R: Real> Work for Two<R> {
+    type Output = [R; 2];
+    #[inline(always)]
+    fn run(self) -> [R; 2] {
+        let [a, b, c] = self.0;
+        [(a * b).exp() + c, (b - c).sin()]
+    }
+}
 
 /// Every method of `Real`, every operator, vectors, frames and loops.
 #[inline(always)]
@@ -46,7 +57,10 @@ fn everything<R: Real>(a: R, b: R, c: R) -> [R; RESULTS] {
     let mirrored = v.reflect(frame.n);
     let cross = v.cross(local);
     let smallest = v.min(cross).max(local);
+    let apart = R::out_of_line(Two([a, b, c]));
     [
+        apart[0],
+        apart[1],
         a + b,
         a - b,
         a * b,

@@ -9,6 +9,7 @@ pub mod lambertian;
 pub mod mirror;
 pub mod oren_nayar;
 pub mod phong;
+pub mod rough_dielectric;
 pub mod scaled;
 pub mod smooth_dielectric;
 pub mod sum;
@@ -18,13 +19,46 @@ pub mod toon;
 pub mod torrance_sparrow;
 
 use crate::{Brdf, BrdfError, ModelInfo, ModelSpec, Number, Sample, registry};
-use gonio_num::{Real, Vec3};
+use gonio_num::{Real, Vec3, Work};
+
+/// A model whose numbers can be of any type: what a batch needs to go from `f32` to lanes.
+pub(crate) trait Castable<R: Real, const N: usize> {
+    /// The model over another number type.
+    type Over<S: Number>: Brdf<S, N>;
+    /// Each number converted by `f`.
+    fn over<S: Number>(&self, f: &impl Fn(R) -> S) -> Self::Over<S>;
+}
 
 /// What is done with a model in its own type: the choice among models then stands outside the loop.
 pub(crate) trait Visitor<R: Real, const N: usize> {
     /// Called once.
-    fn visit<B: Brdf<R, N>>(self, model: &B);
+    fn visit<B: Castable<R, N>>(self, model: &B);
 }
+
+/// [`Brdf::eval`] of one model, as a function of its own.
+struct EvalOf<'a, B, R, const N: usize>(&'a B, Vec3<R>, Vec3<R>);
+/// [`Brdf::pdf`], the same way.
+struct PdfOf<'a, B, R, const N: usize>(&'a B, Vec3<R>, Vec3<R>);
+/// [`Brdf::eval_and_pdf`], the same way.
+struct EvalAndPdfOf<'a, B, R, const N: usize>(&'a B, Vec3<R>, Vec3<R>);
+/// [`Brdf::sample`], the same way.
+struct SampleOf<'a, B, R, const N: usize>(&'a B, Vec3<R>, [R; 3]);
+
+macro_rules! work {
+    ($name:ident: $method:ident -> $output:ty) => {
+        impl<R: Real, const N: usize, B: Brdf<R, N>> Work for $name<'_, B, R, N> {
+            type Output = $output;
+            #[inline(always)]
+            fn run(self) -> $output {
+                self.0.$method(self.1, self.2)
+            }
+        }
+    };
+}
+work!(EvalOf: eval -> [R; N]);
+work!(PdfOf: pdf -> R);
+work!(EvalAndPdfOf: eval_and_pdf -> ([R; N], R));
+work!(SampleOf: sample -> Sample<R, N>);
 
 macro_rules! models {
     ($($(#[$doc:meta])* $variant:ident: $module:ident,)*) => {
@@ -37,20 +71,20 @@ macro_rules! models {
         /// Every model's entry.
         pub(crate) const INFOS: &[ModelInfo] = &[$($module::INFO,)*];
 
-        // Not marked for inlining: a caller would get the code of every model, a sum of sums that of every pair. Batches
-        // choose the model once, through `visit`.
+        // Each model's code is a function of its own: a caller would get that of every model, a sum of sums that of every pair,
+        // and a compiler would choke on it. Batches choose the model once, through `visit`.
         impl<R: Number, const N: usize> Brdf<R, N> for Model<R, N> {
             fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-                match self { $(Self::$variant(m) => m.eval(wi, wo),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(EvalOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-                match self { $(Self::$variant(m) => m.pdf(wi, wo),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(PdfOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
-                match self { $(Self::$variant(m) => m.eval_and_pdf(wi, wo),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(EvalAndPdfOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-                match self { $(Self::$variant(m) => m.sample(wo, u),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(SampleOf::<_, R, N>(m, wo, u)),)* }
             }
             fn albedo_estimate(&self, wo: Vec3<R>) -> R {
                 match self { $(Self::$variant(m) => m.albedo_estimate(wo),)* }
@@ -65,6 +99,13 @@ macro_rules! models {
                 match self { $(Self::$variant(m) => m.absorption(),)* }
             }
         }
+
+        $(impl<R: Number, const N: usize> Castable<R, N> for $module::$variant<R, N> {
+            type Over<S: Number> = $module::$variant<S, N>;
+            fn over<S: Number>(&self, f: &impl Fn(R) -> S) -> Self::Over<S> {
+                self.cast(f)
+            }
+        })*
 
         impl<R: Number, const N: usize> Model<R, N> {
             /// From a description; see [`ModelSpec::build`].
@@ -82,7 +123,6 @@ macro_rules! models {
             }
 
             /// Calls the visitor with the model in its own type.
-            #[inline(always)]
             pub(crate) fn visit<V: Visitor<R, N>>(&self, visitor: V) {
                 match self { $(Self::$variant(m) => visitor.visit(m),)* }
             }
@@ -114,6 +154,8 @@ models! {
     TorranceSparrow: torrance_sparrow,
     /// A smooth boundary into a clear body.
     SmoothDielectric: smooth_dielectric,
+    /// Walter et al. 2007: a rough boundary into a clear body.
+    RoughDielectric: rough_dielectric,
     /// A thin pane of glass.
     ThinDielectric: thin_dielectric,
     /// The metallic-roughness material of glTF 2.0.
@@ -144,6 +186,7 @@ impl<R: Number, const N: usize> Model<R, N> {
         match self {
             Self::Sum(sum) => sum.parts.iter().all(Model::is_recordable),
             Self::Scaled(scaled) => scaled.of.is_recordable(),
+            Self::TorranceSparrow(facets) => facets.is_recordable(),
             other => other.info().recordable,
         }
     }

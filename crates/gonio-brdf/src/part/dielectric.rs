@@ -49,9 +49,20 @@ pub(crate) const ABSORPTION: ParameterInfo = ParameterInfo::colour(
     "absorption coefficient σ of the body, per unit of length: e^(−σd) is left after a distance d",
 );
 
-/// How much nearer to 1 than this an index of refraction may not be: there the refracted lobe of the smoothest surface is narrower than
-/// single precision resolves directions.
+/// A rough boundary's index of refraction may not be nearer to 1 than this: there the refracted lobe of the smoothest surface is narrower
+/// than single precision resolves directions.
 pub const LEAST_CONTRAST: f64 = 1e-3;
+
+/// An index of refraction that isn't nearer to 1 than [`LEAST_CONTRAST`].
+pub(crate) fn contrasted<R: Real>(ior: R) -> R {
+    let near = (ior - R::one()).abs().lt(R::lit(LEAST_CONTRAST));
+    let beside = R::select(
+        ior.lt(R::one()),
+        R::lit(1.0 - LEAST_CONTRAST),
+        R::lit(1.0 + LEAST_CONTRAST),
+    );
+    R::select(near, beside, ior)
+}
 
 impl<R: Real, const N: usize> Boundary<R, N> {
     pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {

@@ -1,9 +1,13 @@
 //! Fresnel reflectance of unpolarised light (T17).
 
+mod description;
+mod thin_film;
+
+pub(crate) use description::{ETA, F0, F82, FILM_IOR, FILM_THICKNESS, IOR, K, METAL, parameter};
+pub use thin_film::ThinFilm;
+
 use super::colour::{cast, each_component, grey};
 use super::special::GAUSS_LEGENDRE_16;
-use crate::model::components;
-use crate::{BrdfError, ModelSpec, ParameterInfo, part::metal};
 use gonio_num::Real;
 
 /// Schlick's approximation: F = F₀ + (F₉₀ − F₀)(1 − cosθ)⁵.
@@ -34,6 +38,18 @@ pub fn dielectric<R: Real>(cos: R, ior: R) -> R {
     R::select(total, R::one(), (s * s + p * p) * R::lit(0.5))
 }
 
+/// [`dielectric`] from the cosines on both sides, which must obey Snell's law: the same to the last bit from either side.
+///
+/// - `outer`, `inner`: cosines of the angles of incidence and refraction, [0, 1]
+/// - `ior`: index of the inner side over that of the outer
+#[inline(always)]
+pub fn dielectric_cosines<R: Real>(outer: R, inner: R, ior: R) -> R {
+    let tiny = R::lit(1e-20);
+    let s = (outer - ior * inner) / (outer + ior * inner).max(tiny);
+    let p = (ior * outer - inner) / (ior * outer + inner).max(tiny);
+    (s * s + p * p) * R::lit(0.5)
+}
+
 /// Reflectance of a smooth boundary between vacuum and an absorbing medium of index η + ik.
 ///
 /// - `cos`: cosine of the angle of incidence, [0, 1]
@@ -58,6 +74,34 @@ pub fn conductor<R: Real>(cos: R, eta: R, k: R) -> R {
     (t1 - t2) * t3 / ((t1 + t2) * (t3 + t4)).max(R::lit(1e-30))
 }
 
+/// Schlick's approximation with the reflectance near 82° (cosθ = 1/7) multiplied by a tint:
+///
+/// F = F₀ + (1 − F₀)(1 − cosθ)⁵ − b cosθ (1 − cosθ)⁶, b = (1 − t) S(1/7)/((1/7)(6/7)⁶), S Schlick's
+///
+/// - `cos`: cosine of the angle to the (micro)facet's normal, [0, 1]
+/// - `f0`: reflectance at normal incidence, [0, 1]
+/// - `tint`: t, [0, 1]; 1 is Schlick's
+///
+/// Where a small F₀ meets a dark tint the polynomial dips below 0 between 82° and the normal: there it is 0.
+/// Source: Kutz, Hašan & Edmondson 2021, "Novel Aspects of the Adobe Standard Material", §2.3; Hoffman 2019, "Fresnel Equations
+/// Considered Harmful"; OpenPBR 1.1, eq. 41.
+#[inline(always)]
+pub fn f82_tint<R: Real>(cos: R, f0: R, tint: R) -> R {
+    let left = (R::one() - cos).saturate();
+    let b = f82_strength(f0, tint);
+    let f = schlick(cos, f0, R::one()) - b * cos * left.pow5() * left;
+    f.max(R::zero())
+}
+
+/// b of [`f82_tint`].
+#[inline(always)]
+fn f82_strength<R: Real>(f0: R, tint: R) -> R {
+    const AT: f64 = 1.0 / 7.0;
+    const SIXTH: f64 = 46_656.0 / 117_649.0; // (6/7)⁶
+    let s = schlick(R::lit(AT), f0, R::one());
+    s * (R::one() - tint) * R::lit(1.0 / (AT * SIXTH))
+}
+
 /// One of the reflectances above, with its constants.
 #[derive(Debug, Clone, Copy)]
 pub enum Fresnel<R: Real, const N: usize> {
@@ -67,6 +111,13 @@ pub enum Fresnel<R: Real, const N: usize> {
     Schlick {
         /// Reflectance at normal incidence.
         f0: [R; N],
+    },
+    /// [`f82_tint`].
+    F82Tint {
+        /// Reflectance at normal incidence.
+        f0: [R; N],
+        /// Factor on Schlick's reflectance at cosθ = 1/7.
+        tint: [R; N],
     },
     /// [`dielectric`].
     Dielectric {
@@ -80,6 +131,8 @@ pub enum Fresnel<R: Real, const N: usize> {
         /// Imaginary part of the index.
         k: [R; N],
     },
+    /// [`ThinFilm`].
+    ThinFilm(ThinFilm<R, N>),
 }
 
 impl<R: Real, const N: usize> Fresnel<R, N> {
@@ -93,18 +146,25 @@ impl<R: Real, const N: usize> Fresnel<R, N> {
                 each_component!(N, k => { out[k] = schlick(cos, f0[k], R::one()); });
                 out
             }
+            Self::F82Tint { f0, tint } => {
+                let mut out = f0;
+                each_component!(N, k => { out[k] = f82_tint(cos, f0[k], tint[k]); });
+                out
+            }
             Self::Dielectric { ior } => grey(dielectric(cos, ior)),
             Self::Conductor { eta, k } => {
                 let mut out = eta;
                 each_component!(N, c => { out[c] = conductor(cos, eta[c], k[c]); });
                 out
             }
+            Self::ThinFilm(ref film) => film.eval(cos),
         }
     }
 
     /// Cosine-weighted mean over the hemisphere, 2 ∫₀¹ F(μ) μ dμ.
     ///
-    /// Closed form for Schlick's, (1 + 20 F₀)/21; else Gauss–Legendre quadrature of 16 nodes in √μ, whose error is below 1e-5.
+    /// Closed form for Schlick's, (1 + 20 F₀)/21; else Gauss–Legendre quadrature of 16 nodes in √μ, whose error is below 1e-5
+    /// (64 nodes and 2e-4 for a dark tint).
     pub fn average(&self) -> [R; N] {
         match *self {
             Self::None => grey(R::one()),
@@ -117,14 +177,23 @@ impl<R: Real, const N: usize> Fresnel<R, N> {
             }
             _ => {
                 let mut out = grey(R::zero());
-                for (x, w) in GAUSS_LEGENDRE_16 {
-                    for side in [-1.0, 1.0] {
-                        // μ = t², 2μ dμ = 4t³ dt, t = (1 ± x)/2: nodes gather at grazing angles.
-                        let t = 0.5 * (1.0 + side * x);
-                        let mu = t * t;
-                        let f = self.eval(R::lit(mu));
-                        for c in 0..N {
-                            out[c] = out[c] + f[c] * R::lit(w * 4.0 * t * mu);
+                // A dark tint makes a kink, where F reaches 0.
+                let panels: u32 = if matches!(self, Self::F82Tint { .. }) {
+                    4
+                } else {
+                    1
+                };
+                let width = 1.0 / f64::from(panels);
+                for panel in 0..panels {
+                    for (x, w) in GAUSS_LEGENDRE_16 {
+                        for side in [-0.5, 0.5] {
+                            // μ = t², 2μ dμ = 4t³ dt: nodes gather at grazing angles.
+                            let t = width * (f64::from(panel) + 0.5 + side * x);
+                            let mu = t * t;
+                            let f = self.eval(R::lit(mu));
+                            for c in 0..N {
+                                out[c] = out[c] + f[c] * R::lit(w * width * 4.0 * t * mu);
+                            }
                         }
                     }
                 }
@@ -138,139 +207,19 @@ impl<R: Real, const N: usize> Fresnel<R, N> {
         match *self {
             Self::None => Fresnel::None,
             Self::Schlick { f0 } => Fresnel::Schlick { f0: cast(f0, f) },
+            Self::F82Tint { f0, tint } => Fresnel::F82Tint {
+                f0: cast(f0, f),
+                tint: cast(tint, f),
+            },
             Self::Dielectric { ior } => Fresnel::Dielectric { ior: f(ior) },
             Self::Conductor { eta, k } => Fresnel::Conductor {
                 eta: cast(eta, f),
                 k: cast(k, f),
             },
+            Self::ThinFilm(ref film) => Fresnel::ThinFilm(film.cast(f)),
         }
-    }
-
-    /// Sets one of the constants, if this kind of reflectance has it.
-    pub(crate) fn set(&mut self, parameter: &str, value: [R; 3]) {
-        match (self, parameter) {
-            (Self::Schlick { f0 }, "f0") => *f0 = components(value),
-            (Self::Dielectric { ior }, "ior") => *ior = value[0],
-            (Self::Conductor { eta, .. }, "eta") => *eta = components(value),
-            (Self::Conductor { k, .. }, "k") => *k = components(value),
-            _ => {}
-        }
-    }
-
-    /// From the parameters `fresnel`, `f0`, `ior`, `eta`, `k` and `metal` of a description.
-    ///
-    /// A parameter that another kind of reflectance needs is an error, not ignored.
-    pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
-        let given = |key: &str| spec.values.contains_key(key);
-        let mut kind = spec.word("fresnel");
-        if !given("fresnel") {
-            // What is given says which reflectance is meant.
-            if given("metal") || given("eta") || given("k") {
-                kind = "conductor".into();
-            } else if given("ior") {
-                kind = "dielectric".into();
-            } else if given("f0") {
-                kind = "schlick".into();
-            }
-        }
-        for (key, used_by) in [
-            ("f0", "schlick"),
-            ("ior", "dielectric"),
-            ("eta", "conductor"),
-            ("k", "conductor"),
-            ("metal", "conductor"),
-        ] {
-            if given(key) && kind != used_by {
-                return Err(spec.wrong(
-                    key,
-                    &format!(
-                        "no value here: only fresnel={used_by} uses it, and fresnel is {kind}"
-                    ),
-                ));
-            }
-        }
-        Ok(match kind.as_str() {
-            "schlick" => Self::Schlick {
-                f0: spec.colour("f0")?,
-            },
-            "dielectric" => Self::Dielectric {
-                ior: spec.real("ior"),
-            },
-            "conductor" => {
-                if given("metal") && (given("eta") || given("k")) {
-                    return Err(spec.wrong("metal", "either metal=NAME or eta and k, not both"));
-                }
-                if given("eta") || given("k") {
-                    for key in ["eta", "k"] {
-                        if !given(key) {
-                            return Err(spec.wrong(key, "both eta and k"));
-                        }
-                    }
-                    Self::Conductor {
-                        eta: spec.colour("eta")?,
-                        k: spec.colour("k")?,
-                    }
-                } else {
-                    let word = spec.word("metal");
-                    let name = if word.is_empty() { "gold" } else { &word };
-                    let metal = metal::find(name)
-                        .ok_or_else(|| spec.wrong("metal", "the name of a measured metal"))?;
-                    Self::Conductor {
-                        eta: spec.components("metal", metal.eta)?,
-                        k: spec.components("metal", metal.k)?,
-                    }
-                }
-            }
-            _ => Self::None,
-        })
     }
 }
-
-/// `fresnel`: which reflectance.
-pub(crate) const fn parameter(default: &'static str) -> ParameterInfo {
-    ParameterInfo::choice(
-        "fresnel",
-        &["schlick", "dielectric", "conductor", "none"],
-        Some(default),
-        "reflectance of the facets; when not given, the parameters below that are given decide",
-    )
-}
-/// `f0`.
-pub(crate) const F0: ParameterInfo = ParameterInfo::colour(
-    "f0",
-    (0.0, 1.0),
-    Some([0.04; 3]),
-    "reflectance at normal incidence (fresnel=schlick)",
-);
-/// `ior`.
-pub(crate) const IOR: ParameterInfo = ParameterInfo::number(
-    "ior",
-    "",
-    (0.1, 10.0),
-    Some(1.5),
-    "relative index of refraction (fresnel=dielectric)",
-);
-/// `eta`.
-pub(crate) const ETA: ParameterInfo = ParameterInfo::colour(
-    "eta",
-    (0.001, 100.0),
-    Some([1.5; 3]),
-    "real part of the index of refraction, with k (fresnel=conductor)",
-);
-/// `k`.
-pub(crate) const K: ParameterInfo = ParameterInfo::colour(
-    "k",
-    (0.0, 100.0),
-    Some([0.0; 3]),
-    "imaginary part of the index of refraction, with eta (fresnel=conductor)",
-);
-/// `metal`.
-pub(crate) const METAL: ParameterInfo = ParameterInfo::choice(
-    "metal",
-    metal::NAMES,
-    None,
-    "a measured metal instead of eta and k (fresnel=conductor); gold when neither is given",
-);
 
 #[cfg(test)]
 mod tests {
@@ -305,9 +254,28 @@ mod tests {
     }
 
     #[test]
+    fn f82_tint_is_the_tint_at_82_degrees() {
+        let at = 1.0 / 7.0;
+        for (f0, tint) in [(0.9, 0.5), (0.3, 1.0), (1.0, 0.0)] {
+            assert!((f82_tint(at, f0, tint) - tint * schlick(at, f0, 1.0)).abs() < 1e-15);
+            assert!((f82_tint(1.0, f0, tint) - f0).abs() < 1e-15);
+            assert!((f82_tint(0.0, f0, tint) - 1.0).abs() < 1e-15);
+        }
+        assert_eq!(f82_tint(0.4, 0.0, 0.0), 0.0);
+    }
+
+    #[test]
     fn averages_match_fine_quadrature() {
-        let cases: [Fresnel<f64, 1>; 4] = [
+        let cases: [Fresnel<f64, 1>; 6] = [
             Fresnel::Schlick { f0: [0.3] },
+            Fresnel::F82Tint {
+                f0: [0.6],
+                tint: [0.4],
+            },
+            Fresnel::F82Tint {
+                f0: [0.05],
+                tint: [0.0],
+            },
             Fresnel::Dielectric { ior: 1.5 },
             Fresnel::Conductor {
                 eta: [0.2],
@@ -322,7 +290,12 @@ mod tests {
                 let mu = (f64::from(i) + 0.5) / f64::from(n);
                 sum += 2.0 * f.eval(mu)[0] * mu / f64::from(n);
             }
-            assert!((f.average()[0] - sum).abs() < 1e-5, "{f:?}: {sum}");
+            // The darker of the tints makes a kink.
+            let tolerance = match f {
+                Fresnel::F82Tint { tint: [0.0], .. } => 2e-4,
+                _ => 1e-5,
+            };
+            assert!((f.average()[0] - sum).abs() < tolerance, "{f:?}: {sum}");
         }
     }
 }
