@@ -103,6 +103,8 @@ fn source(spec: &ModelSpec) -> Result<(String, LoadOptions), BrdfError> {
 pub struct Table<R: Real, const N: usize> {
     /// The table.
     pub data: Arc<Measured>,
+    /// The file that it was read from; empty for a table in memory.
+    pub file: Arc<str>,
     /// What it is multiplied by.
     pub scale: [R; N],
 }
@@ -112,6 +114,7 @@ impl<R: Number, const N: usize> Table<R, N> {
     pub fn new(data: Arc<Measured>) -> Self {
         Self {
             data,
+            file: "".into(),
             scale: [R::one(); N],
         }
     }
@@ -126,6 +129,7 @@ impl<R: Number, const N: usize> Table<R, N> {
         }
         Ok(Self {
             data: Arc::new(data),
+            file: file.into(),
             scale: spec.colour("scale")?,
         })
     }
@@ -133,8 +137,18 @@ impl<R: Number, const N: usize> Table<R, N> {
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Table<S, N> {
         Table {
             data: Arc::clone(&self.data),
+            file: Arc::clone(&self.file),
             scale: cast(self.scale, f),
         }
+    }
+
+    /// Lines about negative and missing values of the file.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let lines = self.data.warnings();
+        lines
+            .into_iter()
+            .map(|l| format!("{}: {l}", self.file))
+            .collect()
     }
 
     pub(crate) fn set(&mut self, _parameter: &str, value: [R; 3]) {
