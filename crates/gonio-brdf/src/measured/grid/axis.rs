@@ -263,7 +263,7 @@ mod tests {
     fn square_roots_are_interpolated() {
         let nodes = vec![0.0, 0.25, 1.0];
         let axis = Axis::new(nodes, Boundary::Clamped, Scale::SquareRoot).unwrap();
-        let b = axis.around(0.5625);
+        let b = axis.around(0.5625f64);
         assert_eq!((b.low, b.high), (1, 2));
         assert!((b.t - 0.5).abs() < 1e-6);
     }

@@ -218,8 +218,8 @@ mod tests {
 
     #[test]
     fn exchanging_the_directions_turns_phi_d_by_half_a_turn() {
-        let wi = spherical_direction(0.7, 0.4);
-        let wo = spherical_direction(1.1, 2.9);
+        let wi: Vec3<f64> = spherical_direction(0.7, 0.4);
+        let wo: Vec3<f64> = spherical_direction(1.1, 2.9);
         let a = half_difference(wi, wo);
         let b = half_difference(wo, wi);
         assert_eq!(a[..3], b[..3]);
@@ -228,8 +228,8 @@ mod tests {
 
     #[test]
     fn the_outgoing_azimuth_counts_from_the_incoming_one() {
-        let wi = spherical_direction(0.5, 1.0);
-        let wo = spherical_direction(0.8, 1.25);
+        let wi: Vec3<f64> = spherical_direction(0.5, 1.0);
+        let wo: Vec3<f64> = spherical_direction(0.8, 1.25);
         let x = Parameterization::Spherical.coordinates(wi, wo);
         for (x, expected) in x.into_iter().zip([0.5, 0.8, 0.25]) {
             assert!((x - expected).abs() < 1e-12);
