@@ -8,6 +8,9 @@ use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::path::Path;
 
+/// Format, name, layout, channels, sides.
+type Case<'a> = (&'a str, &'a str, Layout, &'a [&'a str], &'a [Side]);
+
 fn main() -> Result<(), Box<dyn Error>> {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus");
     let elevations = || Axis::regular(0.0, FRAC_PI_2, 2, Boundary::Clamped);
@@ -42,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let all = vec![elevations()?, turn()?, elevations()?, turn()?];
     let anisotropic = Layout::Grid(Parameterization::SphericalAnisotropic, all);
     let front = &[Side::ReflectionFront][..];
-    let cases: Vec<(&str, &str, Layout, &[&str], &[Side])> = vec![
+    let cases: Vec<Case> = vec![
         (
             "merl",
             "sound",
