@@ -66,6 +66,9 @@ pub enum BrdfError {
         /// What was expected.
         expected: String,
     },
+    /// The user stopped it.
+    #[error("stopped")]
+    Interrupted,
     /// A file could not be read.
     #[error("{}: {source}", path.display())]
     Io {

@@ -147,6 +147,15 @@ impl ModelSpec {
         Model::from_spec(self)
     }
 
+    /// Whether it, or a model in it, is read from a file.
+    pub fn reads_files(&self) -> bool {
+        self.values.values().any(|value| match value {
+            Value::Path(_) => true,
+            Value::Models(models) => models.iter().any(Self::reads_files),
+            _ => false,
+        })
+    }
+
     fn parse_composite(&mut self, inner: &str) -> Result<(), BrdfError> {
         let info = self.info()?;
         let Some(key) = info

@@ -176,6 +176,11 @@ impl Scene {
         for material in changed.iter_mut().filter(|m| chosen(m)) {
             material.replace_model(spec)?;
             count += 1;
+            for warning in material.warnings() {
+                if !self.warnings.contains(&warning) {
+                    self.warnings.push(warning);
+                }
+            }
         }
         self.materials = changed;
         Ok(count)

@@ -58,6 +58,9 @@ impl SceneBuilder {
 
     /// Adds a material; returns its index.
     pub fn material(&mut self, material: Material) -> u32 {
+        for warning in material.warnings() {
+            self.warn(warning);
+        }
         self.materials.push(material);
         self.materials.len() as u32 - 1
     }

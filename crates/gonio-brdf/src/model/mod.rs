@@ -181,6 +181,16 @@ impl<R: Number, const N: usize> Model<R, N> {
         }
     }
 
+    /// What a user should know of the files that it was read from: values that were replaced.
+    pub fn warnings(&self) -> Vec<String> {
+        match self {
+            Self::Sum(sum) => sum.parts.iter().flat_map(Model::warnings).collect(),
+            Self::Scaled(scaled) => scaled.of.warnings(),
+            Self::Table(table) => table.warnings(),
+            _ => Vec::new(),
+        }
+    }
+
     /// Whether its formula can be printed as shader code: not a table, nor anything that contains one.
     pub fn is_recordable(&self) -> bool {
         match self {

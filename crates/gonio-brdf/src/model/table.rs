@@ -1,6 +1,6 @@
 //! A measured table (T19).
 
-use crate::measured::{Tabulated, merl};
+use crate::measured::{self, LoadOptions, Measured, Missing, Repair, Select, Side};
 use crate::part::colour::{cast, mean, mul};
 use crate::{Brdf, BrdfError, Declares, Kind, ModelInfo, ModelSpec, Number, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
@@ -10,19 +10,44 @@ use std::sync::Arc;
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
     name: "table",
-    summary: "a measured table: a file of the MERL database",
-    paper: "Matusik et al. 2003, \"A Data-Driven Reflectance Model\"; Rusinkiewicz 1998 for the angles",
+    summary: "a measured table: a file in one of the formats of measured reflection",
+    paper: "Matusik et al. 2003, \"A Data-Driven Reflectance Model\"; Rusinkiewicz 1998 for half and difference angles; \
+            Klems 1994 for patches; Ward et al. 2012 for tensor trees",
     parameters: &[
         ParameterInfo {
             name: "file",
             kind: Kind::Path,
-            meaning: "the file, in the MERL format",
+            meaning: "the file; its format is told by its content",
         },
         ParameterInfo::colour(
             "scale",
             (0.0, 1000.0),
             Some([1.0; 3]),
             "what to multiply by",
+        ),
+        ParameterInfo::choice(
+            "component",
+            &[
+                "reflection-front",
+                "reflection-back",
+                "transmission-front",
+                "transmission-back",
+                "all",
+            ],
+            None,
+            "the side that is evaluated, of a file that has several; without it the reflection on the front, or the only one there is",
+        ),
+        ParameterInfo::choice(
+            "negative",
+            &["zero", "fill", "refuse"],
+            Some("zero"),
+            "what is done with negative values: counted as 0, filled from the cells around, or the file is refused",
+        ),
+        ParameterInfo::choice(
+            "missing",
+            &["fill", "zero", "refuse"],
+            Some("fill"),
+            "what is done with values that the file marks as missing",
         ),
     ],
     positional: Some("file"),
@@ -31,39 +56,80 @@ pub const INFO: ModelInfo = ModelInfo {
         preset: &[],
     }],
     recordable: false,
-    // Half and difference angles make it reciprocal and isotropic; a measurement promises nothing on energy.
-    declares: |_| Declares::physical(f64::INFINITY),
+    declares,
 };
 
-/// f from a [`Tabulated`] times a colour. Evaluated in double precision whatever R is.
+/// What its layout makes it; a measurement promises nothing on energy. A file that can't be read declares what most do: the model
+/// can't be built then.
+fn declares(spec: &ModelSpec) -> Declares {
+    let mut declares = Declares::physical(f64::INFINITY);
+    if let Ok((path, options)) = source(spec)
+        && let Ok(data) = measured::load(Path::new(&path), options)
+    {
+        declares.reciprocal = data.is_reciprocal();
+        declares.isotropic = data.is_isotropic();
+        declares.relative_ior = data.transmits().then_some([1.0; 3]);
+    }
+    declares
+}
+
+/// The file, and how it is to be read.
+fn source(spec: &ModelSpec) -> Result<(String, LoadOptions), BrdfError> {
+    let Some(crate::Value::Path(file)) = spec.value("file") else {
+        return Err(spec.wrong("file", "a file's path"));
+    };
+    let repair = |key: &str| Repair::from_word(&spec.word(key)).unwrap_or_default();
+    let options = LoadOptions {
+        negative: repair("negative"),
+        missing: Missing(repair("missing")),
+        select: match spec.word("component").as_str() {
+            "" => Select::Front,
+            "all" => Select::All,
+            side => Side::from_name(side).map_or(Select::Front, Select::One),
+        },
+    };
+    Ok((file, options))
+}
+
+/// f(ωi, ωo) from a measured table, times a colour.
+///
+/// A grid of angles is interpolated linearly along every axis, constant beyond the outermost nodes and periodic in azimuth; patches and
+/// tensor trees are constant within a cell. Colours are linear RGB: spectra are projected with the CIE 1931 observer under
+/// D65, so that a flat reflectance is grey.
+///
+/// Sampling is exact for the interpolant: grids are drawn from by cells, of half vectors or of incoming directions, for the viewer's
+/// directions around the one at hand; patches and trees in proportion to f·cosθi.
 #[derive(Debug, Clone)]
 pub struct Table<R: Real, const N: usize> {
-    /// The table, RGB; for N > 3 its last component repeats.
-    pub data: Arc<Tabulated>,
+    /// The table.
+    pub data: Arc<Measured>,
+    /// The file that it was read from; empty for a table in memory.
+    pub file: Arc<str>,
     /// What it is multiplied by.
     pub scale: [R; N],
 }
 
 impl<R: Number, const N: usize> Table<R, N> {
-    /// A table in memory.
-    pub fn new(data: Arc<Tabulated>) -> Self {
+    /// A table in memory. For N ≠ 3 its first colour component repeats, which is right for a grey one.
+    pub fn new(data: Arc<Measured>) -> Self {
         Self {
             data,
+            file: "".into(),
             scale: [R::one(); N],
         }
     }
 
     pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
-        if N != 3 {
+        let (file, options) = source(spec)?;
+        let data = measured::load(Path::new(&file), options)?;
+        if N != 3 && !data.is_grey() {
             return Err(BrdfError::Unsupported {
-                what: format!("a table holds RGB values, and {N} components were asked for"),
+                what: format!("{file} holds colours, and {N} components were asked for"),
             });
         }
-        let Some(crate::Value::Path(file)) = spec.value("file") else {
-            return Err(spec.wrong("file", "a file's path"));
-        };
         Ok(Self {
-            data: Arc::new(merl::read(Path::new(&file))?),
+            data: Arc::new(data),
+            file: file.into(),
             scale: spec.colour("scale")?,
         })
     }
@@ -71,8 +137,18 @@ impl<R: Number, const N: usize> Table<R, N> {
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Table<S, N> {
         Table {
             data: Arc::clone(&self.data),
+            file: Arc::clone(&self.file),
             scale: cast(self.scale, f),
         }
+    }
+
+    /// Lines about negative and missing values of the file.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let lines = self.data.warnings();
+        lines
+            .into_iter()
+            .map(|l| format!("{}: {l}", self.file))
+            .collect()
     }
 
     pub(crate) fn set(&mut self, _parameter: &str, value: [R; 3]) {
@@ -80,43 +156,29 @@ impl<R: Number, const N: usize> Table<R, N> {
     }
 }
 
-/// Two vectors out of six numbers.
-fn pair([a, b, c, d, e, f]: [f64; 6]) -> (Vec3<f64>, Vec3<f64>) {
-    (Vec3::new(a, b, c), Vec3::new(d, e, f))
-}
-
 impl<R: Number, const N: usize> Brdf<R, N> for Table<R, N> {
+    #[inline(always)]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-        let rgb = R::through([wi.x, wi.y, wi.z, wo.x, wo.y, wo.z], &|x| {
-            let (wi, wo) = pair(x);
-            self.data.eval(wi, wo)
-        });
-        mul(self.scale, super::components(rgb))
+        mul(self.scale, super::components(self.data.eval(wi, wo)))
     }
 
+    #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-        let [density] = R::through([wi.x, wi.y, wi.z, wo.x, wo.y, wo.z], &|x| {
-            let (wi, wo) = pair(x);
-            [self.data.pdf(wi, wo)]
-        });
-        density
+        self.data.pdf(wi, wo)
     }
 
+    #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-        let [x, y, z] = R::through([wo.x, wo.y, wo.z, u[0], u[1], u[2]], &|x| {
-            let (wo, u) = pair(x);
-            // Nothing is drawn: a direction below the horizon, of density 0.
-            let down = Vec3::new(0.0, 0.0, -1.0);
-            self.data
-                .sample(wo, u.to_array())
-                .unwrap_or(down)
-                .to_array()
-        });
-        let wi = Vec3::new(x, y, z);
-        self.sample_of(wi, wo)
+        self.sample_of(self.data.sample(wo, u), wo)
     }
 
-    fn albedo_estimate(&self, _wo: Vec3<R>) -> R {
-        R::lit((self.data.mean() * std::f64::consts::PI).min(1.0)) * mean(self.scale)
+    #[inline(always)]
+    fn albedo_estimate(&self, wo: Vec3<R>) -> R {
+        self.data.albedo(wo).min(R::one()) * mean(self.scale)
+    }
+
+    #[inline(always)]
+    fn transmits(&self) -> bool {
+        self.data.transmits()
     }
 }

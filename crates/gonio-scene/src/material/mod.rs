@@ -112,6 +112,11 @@ impl Material {
         })
     }
 
+    /// What a user should know of the measured files that the model was read from.
+    pub fn warnings(&self) -> Vec<String> {
+        self.model.warnings()
+    }
+
     /// The description of the model, without its textures.
     pub fn spec(&self) -> &ModelSpec {
         &self.spec

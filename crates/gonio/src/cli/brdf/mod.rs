@@ -1,12 +1,16 @@
 //! `gonio brdf`.
 
+mod convert;
+mod info;
+
 use super::failure::Failure;
 use super::parse::{self, Angles};
-use super::terminal::{print, print_json, significant};
+use super::terminal::{print, print_json, significant, warn};
 use gonio_brdf::{Brdf, Model, ModelInfo, ModelSpec, registry};
 use gonio_verify::{Effort, Report};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
+use std::path::PathBuf;
 
 #[derive(clap::Subcommand)]
 #[command(after_help = "Example:\n  gonio brdf show torrance-sparrow")]
@@ -44,6 +48,18 @@ pub(super) enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// What a measured file holds: format, layout, channels, origin, faults
+    #[command(after_help = "Example:\n  gonio brdf info gold-paint.binary")]
+    Info {
+        /// A file of measured reflection, of any format
+        file: PathBuf,
+        /// Print it as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// A measured file or a model as a file of another format or layout, and what that costs
+    #[command(after_help = convert::help())]
+    Convert(Box<convert::Arguments>),
     /// Is it physical? Reciprocity, energy, isotropy, sampling, each with a bound and a witness
     #[command(
         after_help = "Examples:\n  gonio brdf check all\n  gonio brdf check phong:exponent=20 --effort thorough\n\n\
@@ -86,6 +102,8 @@ pub(super) fn run(command: Command) -> Result<(), Failure> {
         Command::List { json } => list(json),
         Command::Show { name, json } => show(&name, json),
         Command::Eval { spec, wi, wo, json } => eval(&spec, wi, wo, json),
+        Command::Info { file, json } => info::run(&file, json),
+        Command::Convert(arguments) => convert::run(*arguments),
         Command::Check { spec, effort, json } => check(&spec, effort.into(), json),
     }
 }
@@ -218,6 +236,9 @@ fn in_json(model: &ModelInfo) -> serde_json::Value {
 fn eval(text: &str, wi: Angles, wo: Angles, json: bool) -> Result<(), Failure> {
     let spec = ModelSpec::parse(text)?;
     let model: Model<f64, 3> = spec.build()?;
+    for line in model.warnings() {
+        warn(&line);
+    }
     let (i, o) = (wi.direction(), wo.direction());
     let f = model.eval(i, o);
     let f_cos = model.eval_cos(i, o);
@@ -269,6 +290,12 @@ fn check(text: &str, effort: Effort, json: bool) -> Result<(), Failure> {
     }
     let mut reports: Vec<Report> = Vec::new();
     for spec in &specs {
+        if spec.reads_files() {
+            let model: Model<f32, 3> = spec.build()?;
+            for line in model.warnings() {
+                bar.suspend(|| warn(&line));
+            }
+        }
         bar.set_message(spec.to_string());
         bar.tick();
         let report = gonio_brdf::check(spec, effort)?;
