@@ -74,10 +74,11 @@ pub fn one_at_a_time() -> Vec<ModelSpec> {
 
 /// `count` descriptions of each model with every parameter drawn at random; contradictory ones are drawn again.
 pub fn random(name: &str, count: usize) -> Vec<ModelSpec> {
-    let mut rng = Rng::from_name(name);
     let mut all = Vec::new();
     for info in registry::models() {
         let Some(base) = base(info) else { continue };
+        // Each model has its own numbers: another model in the registry doesn't change them.
+        let mut rng = Rng::from_name(&format!("{name} {}", info.name));
         let mut made = 0;
         while made < count {
             let mut spec = base.clone();
