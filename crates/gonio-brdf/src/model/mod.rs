@@ -4,7 +4,10 @@
 //! line in `models!` below.
 
 pub mod blinn_phong;
+pub mod burley;
+pub mod eon;
 pub mod gltf;
+pub mod lafortune;
 pub mod lambertian;
 pub mod mirror;
 pub mod oren_nayar;
@@ -108,8 +111,14 @@ models! {
     Phong: phong,
     /// Blinn 1977: diffuse and a lobe of the half vector.
     BlinnPhong: blinn_phong,
+    /// Lafortune et al. 1997: diffuse and generalised cosine lobes.
+    Lafortune: lafortune,
     /// Oren & Nayar 1994: rough diffuse.
     OrenNayar: oren_nayar,
+    /// Portsmouth, Kutz & Hill 2024: rough diffuse that preserves energy.
+    Eon: eon,
+    /// Burley 2012: Disney's diffuse.
+    Burley: burley,
     /// Torrance & Sparrow 1967: microfacets (T18).
     TorranceSparrow: torrance_sparrow,
     /// A smooth boundary into a clear body.
