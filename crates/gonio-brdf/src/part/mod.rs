@@ -2,6 +2,7 @@
 //! their directional albedo, and measured metals.
 
 pub mod albedo;
+pub mod ashikhmin_lobe;
 pub(crate) mod colour;
 pub mod dielectric;
 pub mod diffuse_and_lobe;
@@ -10,4 +11,6 @@ pub mod fresnel;
 pub mod geometry;
 pub mod masking;
 pub mod metal;
+pub mod slopes;
 pub(crate) mod special;
+pub mod ward_lobe;
