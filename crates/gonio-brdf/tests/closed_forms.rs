@@ -132,6 +132,16 @@ fn toon_is_flat_within_a_band() {
 }
 
 #[test]
+fn toons_rim_is_seen_at_the_silhouette() {
+    let m = model("toon:reflectance=0.25,bands=1,specular=0,rim=0.5,rim_deg=30");
+    // Seen at 59° from the normal: no rim; at 61°, within 30° of the surface: ρ + rim.
+    for (theta, rho) in [(59.0, 0.25), (61.0, 0.75)] {
+        let radiance = m.eval_cos(UP, tilted(theta, 0.0))[0];
+        assert!(near(radiance, rho * FRAC_1_PI), "{theta}: {radiance}");
+    }
+}
+
+#[test]
 fn a_sum_is_its_parts_with_the_density_of_the_whole() {
     let sum = model("sum(lambertian:0.4, phong:diffuse=0,specular=0.3, mirror:0.2)");
     let parts = [

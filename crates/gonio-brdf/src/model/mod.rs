@@ -9,13 +9,17 @@ pub mod blinn_phong;
 pub mod burley;
 pub mod eon;
 pub mod gltf;
+pub mod gooch;
 pub mod lafortune;
 pub mod lambertian;
 pub mod mirror;
 pub mod oren_nayar;
 pub mod phong;
+pub mod retro_reflective;
 pub mod scaled;
 pub mod smooth_dielectric;
+pub mod sheen_charlie;
+pub mod sheen_ltc;
 pub mod sum;
 pub mod table;
 pub mod thin_dielectric;
@@ -139,8 +143,16 @@ models! {
     ThinDielectric: thin_dielectric,
     /// The metallic-roughness material of glTF 2.0.
     Gltf: gltf,
+    /// Estevez & Kulla 2017: sheen by microfacets.
+    SheenCharlie: sheen_charlie,
+    /// Zeltner, Burley & Chiang 2022: sheen of a fibre layer.
+    SheenLtc: sheen_ltc,
+    /// Belcour et al. 2014: a lobe back towards the light.
+    RetroReflective: retro_reflective,
     /// A cartoon shader (T20).
     Toon: toon,
+    /// Gooch et al. 1998: warm and cool tones of technical illustration (T20).
+    Gooch: gooch,
     /// A sum of models (T9b).
     Sum: sum,
     /// A model times a colour.

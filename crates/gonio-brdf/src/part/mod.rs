@@ -11,6 +11,7 @@ pub mod fresnel;
 pub mod geometry;
 pub mod masking;
 pub mod metal;
+pub mod sheen_lobe;
 pub mod slopes;
 pub(crate) mod special;
 pub mod ward_lobe;
