@@ -1,7 +1,7 @@
 //! Many directions at once: the same formulas over lanes, under the widest instruction set of the machine.
 //!
 //! Directions are structures of arrays. Results have the same bits as those of a single call in `f32`, on any machine.
-//! A batch is several times faster than single calls for the closed-form models; `Sum` and `Scaled` dispatch for each
+//! A batch is several times faster than single calls for the closed-form models; `Sum`, `Mix` and `Scaled` dispatch for each
 //! group of lanes, and `Table` reads its memory lane by lane.
 
 use crate::model::Visitor;

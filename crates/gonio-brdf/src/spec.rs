@@ -33,9 +33,9 @@ impl ModelSpec {
         Ok(spec)
     }
 
-    /// Reads `name`, `name:key=value,key=value`, `sum(spec, spec)` or `scaled(factor, spec)`.
+    /// Reads `name`, `name:key=value,key=value`, `sum(spec, spec)`, `scaled(factor, spec)` or `mix(weight, spec, spec)`.
     ///
-    /// A colour is `r/g/b` (linear), `#rrggbb` (sRGB-encoded) or one number for all components. In `sum(…)` a piece that
+    /// A colour is `r/g/b` (linear), `#rrggbb` (sRGB-encoded) or one number for all components. In `sum(…)` and `mix(…)` a piece that
     /// is only `key=value` belongs to the model before it.
     ///
     /// # Errors

@@ -13,6 +13,7 @@ pub mod gooch;
 pub mod lafortune;
 pub mod lambertian;
 pub mod mirror;
+pub mod mix;
 pub mod oren_nayar;
 pub mod phong;
 pub mod retro_reflective;
@@ -155,6 +156,8 @@ models! {
     Gooch: gooch,
     /// A sum of models (T9b).
     Sum: sum,
+    /// Two models in shares (T9b).
+    Mix: mix,
     /// A model times a colour.
     Scaled: scaled,
     /// A measured table (T19).
@@ -167,6 +170,7 @@ impl<R: Number, const N: usize> Model<R, N> {
         match self {
             Self::Mirror(_) | Self::SmoothDielectric(_) | Self::ThinDielectric(_) => true,
             Self::Sum(sum) => sum.parts.iter().all(Model::is_delta),
+            Self::Mix(mix) => mix.parts.iter().all(Model::is_delta),
             Self::Scaled(scaled) => scaled.of.is_delta(),
             _ => false,
         }
@@ -176,6 +180,7 @@ impl<R: Number, const N: usize> Model<R, N> {
     pub fn is_recordable(&self) -> bool {
         match self {
             Self::Sum(sum) => sum.parts.iter().all(Model::is_recordable),
+            Self::Mix(mix) => mix.parts.iter().all(Model::is_recordable),
             Self::Scaled(scaled) => scaled.of.is_recordable(),
             other => other.info().recordable,
         }
@@ -220,11 +225,16 @@ impl ParameterSlot {
 
 impl<const N: usize> Model<f32, N> {
     /// Sets a parameter to `value`, of which a number takes the first component; it is limited to the declared range, NaN
-    /// to the low end. `Sum` and `Scaled` pass it on to their parts of that model.
+    /// to the low end. `Sum`, `Mix` and `Scaled` pass it on to their parts of that model.
     pub fn set_parameter(&mut self, slot: ParameterSlot, value: [f32; 3]) {
         match self {
             Self::Sum(sum) if slot.model != sum::INFO.name => {
                 for part in &mut sum.parts {
+                    part.set_parameter(slot, value);
+                }
+            }
+            Self::Mix(mix) if slot.model != mix::INFO.name => {
+                for part in mix.parts.iter_mut() {
                     part.set_parameter(slot, value);
                 }
             }
