@@ -4,7 +4,7 @@
 //! A batch is several times faster than single calls for the closed-form models; `Sum`, `Mix` and `Scaled` dispatch for each
 //! group of lanes, and `Table` reads its memory lane by lane.
 
-use crate::model::Visitor;
+use crate::model::{OverLanes, Visitor};
 use crate::{Brdf, Model};
 use gonio_num::dispatch::{InstructionSet, Kernel, dispatch_on};
 use gonio_num::lanes::Lanes;
@@ -122,15 +122,12 @@ pub fn eval_on<const N: usize>(
             "results must have the directions' length"
         );
     }
-    dispatch_on(
+    model.visit(Eval {
         set,
-        Eval {
-            model,
-            wi,
-            wo,
-            result,
-        },
-    );
+        wi,
+        wo,
+        result,
+    });
 }
 
 /// As [`pdf`], under a given instruction set.
@@ -146,15 +143,12 @@ pub fn pdf_on<const N: usize>(
 ) {
     wi.check(result.len());
     wo.check(result.len());
-    dispatch_on(
+    model.visit(Pdf {
         set,
-        Pdf {
-            model,
-            wi,
-            wo,
-            result,
-        },
-    );
+        wi,
+        wo,
+        result,
+    });
 }
 
 /// As [`sample`], under a given instruction set.
@@ -179,103 +173,107 @@ pub fn sample_on<const N: usize>(
         same,
         "directions, numbers and results must have the same length"
     );
-    dispatch_on(
-        set,
-        Draw {
-            model,
-            wo,
-            u,
-            result,
-        },
-    );
+    model.visit(Draw { set, wo, u, result });
 }
 
-// A kernel splats the model's numbers over the lanes once, then chooses the model once, outside the loop.
-macro_rules! kernel {
-    ($name:ident) => {
-        impl<const N: usize> Kernel for $name<'_, N> {
-            type Output = ();
-            #[inline(always)]
-            fn run<const L: usize>(self) {
-                let lanes: Model<Lanes<L>, N> = self.model.cast(&Lanes::splat);
-                lanes.visit(self);
+/// What to do, and the model to do it with.
+struct Run<'m, M, W, const N: usize> {
+    model: &'m M,
+    work: W,
+}
+
+// A batch chooses the model once, outside its loop. The code of each model is compiled on its own, for each instruction set: `visit` is
+// not inlined, or its caller would hold the baseline's code of every model.
+macro_rules! visitor {
+    ($work:ty) => {
+        impl<const N: usize> Visitor<N> for $work {
+            #[inline(never)]
+            fn visit<M: OverLanes<N>>(self, model: &M) {
+                dispatch_on(self.set, Run::<_, _, N> { model, work: self });
             }
         }
     };
 }
 
 struct Eval<'a, const N: usize> {
-    model: &'a Model<f32, N>,
+    set: InstructionSet,
     wi: Directions<'a>,
     wo: Directions<'a>,
     result: [&'a mut [f32]; N],
 }
-kernel!(Eval);
+visitor!(Eval<'_, N>);
 
-impl<const L: usize, const N: usize> Visitor<Lanes<L>, N> for Eval<'_, N> {
+impl<'a, M: OverLanes<N>, const N: usize> Kernel for Run<'_, M, Eval<'a, N>, N> {
+    type Output = ();
     #[inline(always)]
-    fn visit<B: Brdf<Lanes<L>, N>>(self, model: &B) {
+    fn run<const L: usize>(self) {
+        let model = self.model.over_lanes::<L>();
+        let Eval { wi, wo, result, .. } = self.work;
         let mut at = 0;
-        while at < self.wo.len() {
-            let f = model.eval(self.wi.load(at), self.wo.load(at));
+        while at < wo.len() {
+            let f = model.eval(wi.load(at), wo.load(at));
             for k in 0..N {
-                f[k].store(&mut self.result[k][at..]);
+                f[k].store(&mut result[k][at..]);
             }
             at += L;
         }
     }
 }
 
-struct Pdf<'a, const N: usize> {
-    model: &'a Model<f32, N>,
+struct Pdf<'a> {
+    set: InstructionSet,
     wi: Directions<'a>,
     wo: Directions<'a>,
     result: &'a mut [f32],
 }
-kernel!(Pdf);
+visitor!(Pdf<'_>);
 
-impl<const L: usize, const N: usize> Visitor<Lanes<L>, N> for Pdf<'_, N> {
+impl<'a, M: OverLanes<N>, const N: usize> Kernel for Run<'_, M, Pdf<'a>, N> {
+    type Output = ();
     #[inline(always)]
-    fn visit<B: Brdf<Lanes<L>, N>>(self, model: &B) {
+    fn run<const L: usize>(self) {
+        let model = self.model.over_lanes::<L>();
+        let Pdf { wi, wo, result, .. } = self.work;
         let mut at = 0;
-        while at < self.wo.len() {
-            model
-                .pdf(self.wi.load(at), self.wo.load(at))
-                .store(&mut self.result[at..]);
+        while at < wo.len() {
+            model.pdf(wi.load(at), wo.load(at)).store(&mut result[at..]);
             at += L;
         }
     }
 }
 
 struct Draw<'a, const N: usize> {
-    model: &'a Model<f32, N>,
+    set: InstructionSet,
     wo: Directions<'a>,
     u: [&'a [f32]; 3],
     result: Samples<'a, N>,
 }
-kernel!(Draw);
+visitor!(Draw<'_, N>);
 
-impl<const L: usize, const N: usize> Visitor<Lanes<L>, N> for Draw<'_, N> {
+impl<'a, M: OverLanes<N>, const N: usize> Kernel for Run<'_, M, Draw<'a, N>, N> {
+    type Output = ();
     #[inline(always)]
-    fn visit<B: Brdf<Lanes<L>, N>>(self, model: &B) {
+    fn run<const L: usize>(self) {
+        let model = self.model.over_lanes::<L>();
+        let Draw { wo, u, result, .. } = self.work;
         let mut at = 0;
-        while at < self.wo.len() {
-            let u = [
-                Lanes::load_or(&self.u[0][at..], 0.0),
-                Lanes::load_or(&self.u[1][at..], 0.0),
-                Lanes::load_or(&self.u[2][at..], 0.0),
+        while at < wo.len() {
+            let numbers = [
+                Lanes::load_or(&u[0][at..], 0.0),
+                Lanes::load_or(&u[1][at..], 0.0),
+                Lanes::load_or(&u[2][at..], 0.0),
             ];
-            let s = model.sample(self.wo.load(at), u);
+            let s = model.sample(wo.load(at), numbers);
             let wi = s.wi.to_array();
             for k in 0..3 {
-                wi[k].store(&mut self.result.wi[k][at..]);
+                wi[k].store(&mut result.wi[k][at..]);
             }
             for k in 0..N {
-                s.weight[k].store(&mut self.result.weight[k][at..]);
+                s.weight[k].store(&mut result.weight[k][at..]);
             }
-            s.pdf.store(&mut self.result.pdf[at..]);
+            s.pdf.store(&mut result.pdf[at..]);
             let delta = Lanes::<L>::from_mask(s.delta);
-            for (lane, d) in self.result.delta[at..].iter_mut().take(L).enumerate() {
+            for (lane, d) in result.delta[at..].iter_mut().take(L).enumerate() {
                 *d = delta.0[lane] != 0.0;
             }
             at += L;

@@ -1,6 +1,6 @@
 //! Lafortune's model: diffuse and up to three generalised cosine lobes.
 
-use crate::part::colour::{add, cast, each_component, mean, only_where, scale};
+use crate::part::colour::{cast, mean, only_where, scale};
 use crate::part::geometry::above;
 use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
 use gonio_num::{Frame, Real, Vec3};
@@ -361,27 +361,27 @@ impl<R: Real, const N: usize> Lafortune<R, N> {
             if !lobe.active {
                 continue;
             }
-            let mut part = self.diffuse;
-            each_component!(N, k => { part[k] = lobe.value(self.normalised, k, product); });
-            f = add(f, part);
+            for k in 0..N {
+                f[k] = f[k] + lobe.value(self.normalised, k, product);
+            }
         }
         f
     }
 }
 
-/// Runs the body for each part that samples a lobe of `$model` towards `$wo`.
+/// Runs the body for each part that samples a lobe of `$model` towards `$wo`. A loop: written out, the nine parts would make a function
+/// of a size that compilers take long for.
 macro_rules! each_part {
     ($model:ident, $wo:ident, $part:ident => $body:block) => {
         for lobe in &$model.lobes {
             if !lobe.active {
                 continue;
             }
-            each_component!(N, k => {
-                if k == 0 || !lobe.grey {
-                    let $part = lobe.part($model.normalised, k, $wo);
-                    $body
-                }
-            });
+            let axes = if lobe.grey { 1 } else { N };
+            for k in 0..axes {
+                let $part = lobe.part($model.normalised, k, $wo);
+                $body
+            }
         }
     };
 }

@@ -1,7 +1,7 @@
 //! A mixture of two models (T9b).
 
+use super::sum::same_interior;
 use crate::part::colour::{cast, each_component, mean, only_where, scale};
-use crate::part::geometry::above;
 use crate::{
     Brdf, BrdfError, Declares, Kind, Model, ModelInfo, ModelSpec, Number, ParameterInfo, Sample,
 };
@@ -47,6 +47,7 @@ fn declares(spec: &ModelSpec) -> Declares {
     Declares {
         reciprocal: first.reciprocal && second.reciprocal,
         isotropic: first.isotropic && second.isotropic,
+        relative_ior: first.relative_ior.or(second.relative_ior),
         ..Declares::physical(bound)
     }
 }
@@ -55,6 +56,9 @@ fn declares(spec: &ModelSpec) -> Declares {
 ///
 /// `sample` chooses one of the two with a probability proportional to its share times its estimated albedo (plus 1/50 of both). A
 /// continuous direction gets the weight and density of the whole; a discrete one the part's weight over its probability.
+///
+/// If both transmit they must agree on the index of refraction, since there is one inner side; its absorption is that of the first
+/// that does.
 #[derive(Debug, Clone)]
 pub struct Mix<R: Real, const N: usize> {
     /// w, [0, 1].
@@ -66,10 +70,13 @@ pub struct Mix<R: Real, const N: usize> {
 impl<R: Number, const N: usize> Mix<R, N> {
     pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
         match spec.models("of") {
-            [first, second] => Ok(Self {
-                weight: spec.colour("weight")?,
-                parts: Box::new([first.build()?, second.build()?]),
-            }),
+            parts @ [first, second] => {
+                same_interior(spec, parts)?;
+                Ok(Self {
+                    weight: spec.colour("weight")?,
+                    parts: Box::new([first.build()?, second.build()?]),
+                })
+            }
             _ => Err(spec.wrong("of", "exactly two models: mix(weight, model, model)")),
         }
     }
@@ -85,6 +92,11 @@ impl<R: Number, const N: usize> Mix<R, N> {
 
     pub(crate) fn set(&mut self, _parameter: &str, value: [R; 3]) {
         self.weight = super::components(value);
+    }
+
+    /// The first part that transmits.
+    fn interior(&self) -> Option<&Model<R, N>> {
+        self.parts.iter().find(|part| part.transmits())
     }
 
     /// The share of part `k`.
@@ -130,16 +142,14 @@ impl<R: Number, const N: usize> Brdf<R, N> for Mix<R, N> {
     #[inline]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
         let ([a, b], [first, second]) = (self.choices(wo), &*self.parts);
-        let density = a * first.pdf(wi, wo) + b * second.pdf(wi, wo);
-        R::select(above(wi, wo), density, R::zero())
+        a * first.pdf(wi, wo) + b * second.pdf(wi, wo)
     }
 
     #[inline]
     fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
         let ([a, b], [first, second]) = (self.choices(wo), &*self.parts);
         let ((f, p), (g, q)) = (first.eval_and_pdf(wi, wo), second.eval_and_pdf(wi, wo));
-        let density = R::select(above(wi, wo), a * p + b * q, R::zero());
-        (self.mixed(f, g), density)
+        (self.mixed(f, g), a * p + b * q)
     }
 
     #[inline]
@@ -180,6 +190,18 @@ impl<R: Number, const N: usize> Brdf<R, N> for Mix<R, N> {
         let [first, second] = &*self.parts;
         let weight = mean(self.weight);
         weight.lerp(first.albedo_estimate(wo), second.albedo_estimate(wo))
+    }
+
+    fn transmits(&self) -> bool {
+        self.interior().is_some()
+    }
+
+    fn relative_ior(&self) -> [R; N] {
+        self.interior().map_or([R::one(); N], Brdf::relative_ior)
+    }
+
+    fn absorption(&self) -> [R; N] {
+        self.interior().map_or([R::zero(); N], Brdf::absorption)
     }
 }
 
@@ -228,5 +250,15 @@ mod tests {
         assert!(!declares("mix(0.5, lambertian:0.4, toon)").energy_conserving);
         assert!(declares("mix(0, lambertian:0.4, toon)").energy_conserving);
         assert!(!declares("mix(0.5, ggx:anisotropy=0.5, toon)").isotropic);
+        // A pane is mixed with what reflects, not with another medium.
+        let glass = "mix(0.5, lambertian:0.4, smooth-dielectric:ior=1.5)";
+        assert_eq!(declares(glass).relative_ior, Some([1.5; 3]));
+        assert!(model(glass).transmits());
+        let two = "mix(0.5, smooth-dielectric:ior=1.3, smooth-dielectric:ior=1.5)";
+        let error = ModelSpec::parse(two)
+            .unwrap()
+            .build::<f64, 3>()
+            .unwrap_err();
+        assert!(error.to_string().contains("inner side"), "{error}");
     }
 }

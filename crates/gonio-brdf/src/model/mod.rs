@@ -18,9 +18,9 @@ pub mod oren_nayar;
 pub mod phong;
 pub mod retro_reflective;
 pub mod scaled;
-pub mod smooth_dielectric;
 pub mod sheen_charlie;
 pub mod sheen_ltc;
+pub mod smooth_dielectric;
 pub mod sum;
 pub mod table;
 pub mod thin_dielectric;
@@ -30,12 +30,64 @@ pub mod ward;
 pub mod ward_duer;
 
 use crate::{Brdf, BrdfError, ModelInfo, ModelSpec, Number, Sample, registry};
+use gonio_num::lanes::Lanes;
 use gonio_num::{Real, Vec3};
 
+/// A model in a type of its own, with its numbers splatted over lanes for a batch.
+pub(crate) trait OverLanes<const N: usize> {
+    /// The model over `L` lanes.
+    type Laned<const L: usize>: Brdf<Lanes<L>, N>;
+    /// Splats its numbers.
+    fn over_lanes<const L: usize>(&self) -> Self::Laned<L>;
+}
+
 /// What is done with a model in its own type: the choice among models then stands outside the loop.
-pub(crate) trait Visitor<R: Real, const N: usize> {
+pub(crate) trait Visitor<const N: usize> {
     /// Called once.
-    fn visit<B: Brdf<R, N>>(self, model: &B);
+    fn visit<M: OverLanes<N>>(self, model: &M);
+}
+
+/// Each model's code as a function of its own. A function that holds the code of every model takes a compiler minutes, as its time
+/// grows faster than the function.
+mod apart {
+    use super::{Brdf, Real, Sample, Vec3};
+
+    #[inline(never)]
+    pub(super) fn eval<R: Real, const N: usize>(
+        m: &impl Brdf<R, N>,
+        wi: Vec3<R>,
+        wo: Vec3<R>,
+    ) -> [R; N] {
+        m.eval(wi, wo)
+    }
+
+    #[inline(never)]
+    pub(super) fn pdf<R: Real, const N: usize>(m: &impl Brdf<R, N>, wi: Vec3<R>, wo: Vec3<R>) -> R {
+        m.pdf(wi, wo)
+    }
+
+    #[inline(never)]
+    pub(super) fn eval_and_pdf<R: Real, const N: usize>(
+        m: &impl Brdf<R, N>,
+        wi: Vec3<R>,
+        wo: Vec3<R>,
+    ) -> ([R; N], R) {
+        m.eval_and_pdf(wi, wo)
+    }
+
+    #[inline(never)]
+    pub(super) fn sample<R: Real, const N: usize>(
+        m: &impl Brdf<R, N>,
+        wo: Vec3<R>,
+        u: [R; 3],
+    ) -> Sample<R, N> {
+        m.sample(wo, u)
+    }
+
+    #[inline(never)]
+    pub(super) fn albedo_estimate<R: Real, const N: usize>(m: &impl Brdf<R, N>, wo: Vec3<R>) -> R {
+        m.albedo_estimate(wo)
+    }
 }
 
 macro_rules! models {
@@ -46,6 +98,21 @@ macro_rules! models {
             $($(#[$doc])* $variant($module::$variant<R, N>),)*
         }
 
+        $(impl<const N: usize> OverLanes<N> for $module::$variant<f32, N> {
+            type Laned<const L: usize> = $module::$variant<Lanes<L>, N>;
+            #[inline(always)]
+            fn over_lanes<const L: usize>(&self) -> Self::Laned<L> {
+                self.cast(&Lanes::splat)
+            }
+        })*
+
+        impl<const N: usize> Model<f32, N> {
+            /// Calls the visitor with the model in its own type.
+            pub(crate) fn visit<V: Visitor<N>>(&self, visitor: V) {
+                match self { $(Self::$variant(m) => visitor.visit(m),)* }
+            }
+        }
+
         /// Every model's entry.
         pub(crate) const INFOS: &[ModelInfo] = &[$($module::INFO,)*];
 
@@ -53,19 +120,19 @@ macro_rules! models {
         // choose the model once, through `visit`.
         impl<R: Number, const N: usize> Brdf<R, N> for Model<R, N> {
             fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-                match self { $(Self::$variant(m) => m.eval(wi, wo),)* }
+                match self { $(Self::$variant(m) => apart::eval(m, wi, wo),)* }
             }
             fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-                match self { $(Self::$variant(m) => m.pdf(wi, wo),)* }
+                match self { $(Self::$variant(m) => apart::pdf(m, wi, wo),)* }
             }
             fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
-                match self { $(Self::$variant(m) => m.eval_and_pdf(wi, wo),)* }
+                match self { $(Self::$variant(m) => apart::eval_and_pdf(m, wi, wo),)* }
             }
             fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-                match self { $(Self::$variant(m) => m.sample(wo, u),)* }
+                match self { $(Self::$variant(m) => apart::sample(m, wo, u),)* }
             }
             fn albedo_estimate(&self, wo: Vec3<R>) -> R {
-                match self { $(Self::$variant(m) => m.albedo_estimate(wo),)* }
+                match self { $(Self::$variant(m) => apart::albedo_estimate(m, wo),)* }
             }
             fn transmits(&self) -> bool {
                 match self { $(Self::$variant(m) => Brdf::<R, N>::transmits(m),)* }
@@ -91,12 +158,6 @@ macro_rules! models {
             /// The same model with another number type, each number converted by `f`.
             pub fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Model<S, N> {
                 match self { $(Self::$variant(m) => Model::$variant(m.cast(f)),)* }
-            }
-
-            /// Calls the visitor with the model in its own type.
-            #[inline(always)]
-            pub(crate) fn visit<V: Visitor<R, N>>(&self, visitor: V) {
-                match self { $(Self::$variant(m) => visitor.visit(m),)* }
             }
 
             /// The registry's entry.
