@@ -61,6 +61,9 @@ fn blinn_phong_uses_the_half_vector() {
     // p = 2: 8π (1/2 + 2)/(4·6) = 5π/6 is the albedo at normal incidence.
     let m = model("blinn-phong:diffuse=0,specular=1,exponent=2");
     assert!(near(m.eval(UP, UP)[0], 6.0 / (5.0 * PI)));
+    // p = 6: 8/2π times ks.
+    let m = model("blinn-phong:diffuse=0,specular=0.5,exponent=6,normalisation=normals");
+    assert!(near(m.eval(UP, UP)[0], 2.0 / PI));
 }
 
 #[test]
