@@ -39,6 +39,7 @@ pub mod batch;
 pub mod measured;
 pub mod model;
 pub mod part;
+pub mod preset;
 pub mod record;
 pub mod registry;
 

@@ -61,6 +61,9 @@ fn blinn_phong_uses_the_half_vector() {
     // p = 2: 8π (1/2 + 2)/(4·6) = 5π/6 is the albedo at normal incidence.
     let m = model("blinn-phong:diffuse=0,specular=1,exponent=2");
     assert!(near(m.eval(UP, UP)[0], 6.0 / (5.0 * PI)));
+    // p = 6: 8/2π times ks.
+    let m = model("blinn-phong:diffuse=0,specular=0.5,exponent=6,normalisation=normals");
+    assert!(near(m.eval(UP, UP)[0], 2.0 / PI));
 }
 
 #[test]
@@ -129,6 +132,16 @@ fn toon_is_flat_within_a_band() {
     assert!(near(radiance(20.0), 0.6 * FRAC_1_PI) && near(radiance(30.0), 0.6 * FRAC_1_PI));
     assert!(near(radiance(45.0), 0.4 * FRAC_1_PI));
     assert_eq!(radiance(85.0), 0.0);
+}
+
+#[test]
+fn toons_rim_is_seen_at_the_silhouette() {
+    let m = model("toon:reflectance=0.25,bands=1,specular=0,rim=0.5,rim_deg=30");
+    // Seen at 59° from the normal: no rim; at 61°, within 30° of the surface: ρ + rim.
+    for (theta, rho) in [(59.0, 0.25), (61.0, 0.75)] {
+        let radiance = m.eval_cos(UP, tilted(theta, 0.0))[0];
+        assert!(near(radiance, rho * FRAC_1_PI), "{theta}: {radiance}");
+    }
 }
 
 #[test]

@@ -8,6 +8,7 @@ use crate::part::fresnel::dielectric_cosines;
 use crate::part::geometry::{flipped_where, refracted_about};
 use crate::part::masking::{Masking, visibility_across, visibility_from_areas};
 use crate::part::rough::{self, RoughSurface};
+use crate::part::slopes;
 use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
 use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density};
@@ -20,12 +21,12 @@ pub const INFO: ModelInfo = ModelInfo {
             for interreflection",
     parameters: &[
         rough::DISTRIBUTION,
-        rough::ROUGHNESS,
-        rough::ALPHA,
-        rough::ANISOTROPY,
-        rough::ALPHA_X,
-        rough::ALPHA_Y,
-        rough::ROTATION,
+        slopes::ROUGHNESS,
+        slopes::ALPHA,
+        slopes::ANISOTROPY,
+        slopes::ALPHA_X,
+        slopes::ALPHA_Y,
+        slopes::ROTATION_DEG,
         rough::GAMMA,
         rough::P,
         rough::C,
@@ -56,7 +57,7 @@ pub const INFO: ModelInfo = ModelInfo {
         // Smith's masking for the Blinn–Phong distribution borrows Λ from Beckmann's: visible areas then don't add up.
         let all = dielectric::declares(spec);
         Declares {
-            isotropic: rough::is_isotropic(spec),
+            isotropic: slopes::isotropic(spec),
             relative_ior: Some([dielectric::contrasted(spec.real::<f64>("ior")); 3]),
             albedo_bound: if rough::shape(spec) == Shape::BlinnPhong {
                 f64::INFINITY

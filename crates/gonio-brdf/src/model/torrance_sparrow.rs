@@ -8,6 +8,7 @@ use crate::part::interreflection::{self, Interreflection, Loose};
 use crate::part::masking::{Masking, visibility};
 use crate::part::random_walk::WalkTable;
 use crate::part::rough::{self, RoughSurface};
+use crate::part::slopes;
 use crate::{
     Alias, Brdf, BrdfError, Declares, ModelInfo, ModelSpec, Number, ParameterInfo, Sample,
 };
@@ -23,12 +24,12 @@ pub const INFO: ModelInfo = ModelInfo {
             Walter et al. 2007; Heitz 2014; for interreflection Heitz et al. 2016, Kulla & Conty 2017, Turquin 2019",
     parameters: &[
         rough::DISTRIBUTION,
-        rough::ROUGHNESS,
-        rough::ALPHA,
-        rough::ANISOTROPY,
-        rough::ALPHA_X,
-        rough::ALPHA_Y,
-        rough::ROTATION,
+        slopes::ROUGHNESS,
+        slopes::ALPHA,
+        slopes::ANISOTROPY,
+        slopes::ALPHA_X,
+        slopes::ALPHA_Y,
+        slopes::ROTATION_DEG,
         rough::GAMMA,
         rough::P,
         rough::C,
@@ -88,7 +89,7 @@ fn declares(spec: &ModelSpec) -> Declares {
     // Smith's masking for the Blinn–Phong distribution borrows Λ from Beckmann's: visible areas then don't add up.
     let borrowed = rough::shape(spec) == Shape::BlinnPhong && spec.word("masking") != "v-cavity";
     Declares {
-        isotropic: rough::is_isotropic(spec),
+        isotropic: slopes::isotropic(spec),
         reciprocal: spec.word("interreflection") != "turquin",
         ..Declares::physical(if borrowed { f64::INFINITY } else { 1.0 })
     }

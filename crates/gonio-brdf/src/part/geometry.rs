@@ -81,6 +81,19 @@ pub fn turned<R: Real>(v: Vec3<R>, cos: R, sin: R) -> Vec3<R> {
     Vec3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z)
 }
 
+/// Cosine and sine of the azimuth of `v`; (1, 0) on the normal.
+#[inline(always)]
+pub fn azimuth<R: Real>(v: Vec3<R>) -> [R; 2] {
+    let tiny = R::lit(1e-30);
+    let length2 = v.x * v.x + v.y * v.y;
+    let over = length2.max(tiny).sqrt().recip();
+    let lost = length2.lt(tiny);
+    [
+        R::select(lost, R::one(), v.x * over),
+        R::select(lost, R::zero(), v.y * over),
+    ]
+}
+
 /// √(x² + y²), the sine of θ of a unit vector.
 #[inline(always)]
 pub fn sin_theta<R: Real>(v: Vec3<R>) -> R {

@@ -12,7 +12,14 @@ fn the_list_names_every_model() {
     for model in models {
         let name = model["name"].as_str().unwrap();
         assert!(list.lines().any(|line| line.starts_with(name)), "{name}");
-        for key in ["summary", "paper", "aliases", "parameters", "declares"] {
+        for key in [
+            "summary",
+            "paper",
+            "aliases",
+            "parameters",
+            "presets",
+            "declares",
+        ] {
             assert!(!model[key].is_null() || name == "table", "{name} {key}");
         }
     }
@@ -38,6 +45,64 @@ fn each_model_can_be_shown_in_eighty_columns() {
     assert!(
         text.contains("here 0.25") && text.contains("default 0.04"),
         "{text}"
+    );
+}
+
+#[test]
+fn presets_are_counted_listed_and_shown() {
+    let place = Place::new();
+    // A line or two a model, not a line a preset.
+    let list = place.good(&["brdf", "list"]).out;
+    assert!(list.contains("86 presets, as ward@alum-bronze: gonio brdf list --presets ward"));
+    assert!(!list.contains("gold-paint"), "{list}");
+    let sets = place.good(&["brdf", "list", "--presets"]).out;
+    assert!(
+        sets.lines().any(|l| l.starts_with("cook-torrance@low-e1")),
+        "{sets}"
+    );
+    let ward = place.good(&["brdf", "list", "--presets", "ward"]).out;
+    assert!(
+        ward.contains("gold-paint") && ward.lines().count() < 40,
+        "{ward}"
+    );
+    assert!(ward.lines().all(|l| l.chars().count() <= 80), "{ward}");
+    let json = place.json(&["brdf", "list", "--presets", "ward", "--json"]);
+    assert_eq!(json[0]["presets"].as_array().unwrap().len(), 86);
+    let shown = place.json(&["brdf", "show", "ward", "--json"]);
+    assert_eq!(shown["presets"][0]["set"], "ngan");
+
+    let text = place.good(&["brdf", "show", "ward@gold-paint"]).out;
+    assert!(
+        text.contains("here 0.234") && text.contains("(ngan: MERL materials"),
+        "{text}"
+    );
+    // A sum: the named model is shown, with the whole beside it.
+    let text = place
+        .good(&["brdf", "show", "cook-torrance@gold-paint:alpha=0.3"])
+        .out;
+    assert!(
+        text.starts_with("torrance-sparrow: ") && text.contains("here 0.3"),
+        "{text}"
+    );
+    assert!(text.contains("sum(lambertian:"), "{text}");
+    place.good(&[
+        "brdf",
+        "check",
+        "cook-torrance@gold-paint",
+        "--effort",
+        "quick",
+    ]);
+
+    let nowhere = ["brdf", "list", "--presets", "lambertian"];
+    place.bad(
+        &nowhere,
+        2,
+        &["`lambertian` has no presets", "list --presets"],
+    );
+    place.bad(
+        &["brdf", "list", "--presets", "wart"],
+        2,
+        &["did you mean `ward`?"],
     );
 }
 

@@ -175,6 +175,19 @@ impl<R: Real> Distribution<R> {
         d
     }
 
+    /// Beckmann's, of slope scales that are within [[`ALPHA_MIN`], 1].
+    #[inline(always)]
+    pub(crate) fn beckmann(alpha_x: R, alpha_y: R) -> Self {
+        Self {
+            shape: Shape::Beckmann,
+            alpha_x,
+            alpha_y,
+            tail: R::zero(),
+            peak: R::one(),
+            spread: R::one(),
+        }
+    }
+
     /// An isotropic one without a tail parameter, or with its default.
     pub fn isotropic(shape: Shape, alpha: R) -> Self {
         let tail = shape.tail().map_or(0.0, |t| t.default);

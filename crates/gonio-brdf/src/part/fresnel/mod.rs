@@ -65,10 +65,14 @@ pub fn conductor<R: Real>(cos: R, eta: R, k: R) -> R {
     let t0 = eta * eta - k * k - sin2;
     // a² + b², where a + ib = √(η² − k² − sin² + 2iηk).
     let a2b2 = (t0 * t0 + (eta * k).sq() * R::lit(4.0)).max(tiny).sqrt();
-    let a = ((a2b2 + t0) * R::lit(0.5)).max(tiny).sqrt();
-    let t1 = a2b2 + cos2;
-    let t2 = R::lit(2.0) * a * cos;
-    let t3 = cos2 * a2b2 + sin2 * sin2;
+    // The larger of a and b; the other one is ηk over it, which keeps its digits where η ≪ k. So a = p/q:
+    let larger = ((a2b2 + t0.abs()) * R::lit(0.5)).max(tiny).sqrt();
+    let b_larger = t0.lt(R::zero());
+    let p = R::select(b_larger, eta * k, larger);
+    let q = R::select(b_larger, larger, R::one());
+    let t1 = (a2b2 + cos2) * q;
+    let t2 = R::lit(2.0) * p * cos;
+    let t3 = (cos2 * a2b2 + sin2 * sin2) * q;
     let t4 = t2 * sin2;
     // r⊥² = (t1 − t2)/(t1 + t2) and r∥² = r⊥² (t3 − t4)/(t3 + t4): their mean with one division.
     (t1 - t2) * t3 / ((t1 + t2) * (t3 + t4)).max(R::lit(1e-30))

@@ -5,6 +5,7 @@ mod info;
 
 use super::failure::Failure;
 use super::parse::{self, Angles};
+use super::presets;
 use super::terminal::{print, print_json, significant, warn};
 use gonio_brdf::{Brdf, Model, ModelInfo, ModelSpec, registry};
 use gonio_verify::{Effort, Report};
@@ -16,8 +17,11 @@ use std::path::PathBuf;
 #[command(after_help = "Example:\n  gonio brdf show torrance-sparrow")]
 pub(super) enum Command {
     /// Name every reflection function
-    #[command(after_help = "Example:\n  gonio brdf list")]
+    #[command(after_help = "Examples:\n  gonio brdf list\n  gonio brdf list --presets ward")]
     List {
+        /// Name presets instead: the sets of every model, or what is in those of one
+        #[arg(long, value_name = "MODEL", num_args = 0..=1, default_missing_value = "")]
+        presets: Option<String>,
         /// Print it as JSON
         #[arg(long)]
         json: bool,
@@ -25,7 +29,7 @@ pub(super) enum Command {
     /// What a reflection function is: parameters, ranges, paper, declared properties
     #[command(after_help = "Example:\n  gonio brdf show torrance-sparrow")]
     Show {
-        /// Its name
+        /// Its name, or NAME@PRESET
         name: String,
         /// Print it as JSON
         #[arg(long)]
@@ -99,7 +103,14 @@ impl From<EffortName> for Effort {
 
 pub(super) fn run(command: Command) -> Result<(), Failure> {
     match command {
-        Command::List { json } => list(json),
+        Command::List {
+            presets: Some(model),
+            json,
+        } => presets::list(&model, json),
+        Command::List {
+            presets: None,
+            json,
+        } => list(json),
         Command::Show { name, json } => show(&name, json),
         Command::Eval { spec, wi, wo, json } => eval(&spec, wi, wo, json),
         Command::Info { file, json } => info::run(&file, json),
@@ -133,17 +144,23 @@ fn list(json: bool) -> Result<(), Failure> {
             };
             text += &format!("{:width$}  also {}{meaning}\n", "", alias.name);
         }
+        for line in presets::counted(model) {
+            text += &format!("{:width$}  {line}\n", "");
+        }
     }
     print(&text)
 }
 
 fn show(name: &str, json: bool) -> Result<(), Failure> {
-    let spec = ModelSpec::parse(name)?;
+    let whole = ModelSpec::parse(name)?;
+    // A preset may stand for a sum: the model that was named is a part of it.
+    let named = name.split(['@', ':', '(']).next().unwrap_or(name);
+    let spec = whole.part(named.trim()).unwrap_or(&whole);
     let model = spec.info()?;
     if json {
         return print_json(&in_json(model));
     }
-    let declared = spec.declares()?;
+    let declared = whole.declares()?;
     let mut text = format!(
         "{}\n\n{}\n",
         wrapped(&format!("{}: {}", model.name, model.summary), 2),
@@ -173,6 +190,17 @@ fn show(name: &str, json: bool) -> Result<(), Failure> {
             text += &format!("{}\n", wrapped(&line, width + 4));
         }
     }
+    if name.contains('@') {
+        text += &format!("\n{}\n", wrapped(&presets::explained(name, &whole), 2));
+    } else {
+        let counted = presets::counted(model);
+        if !counted.is_empty() {
+            text += "\nPresets\n";
+        }
+        for line in counted {
+            text += &format!("{}\n", wrapped(&format!("  {line}"), 4));
+        }
+    }
     text += "\nDeclared\n";
     for (holds, property) in [
         (declared.reciprocal, "reciprocal"),
@@ -181,15 +209,15 @@ fn show(name: &str, json: bool) -> Result<(), Failure> {
     ] {
         text += &format!("  {}{property}\n", if holds { "" } else { "not " });
     }
-    text += &format!("\nCheck it: gonio brdf check {spec}\n");
+    text += &format!("\nCheck it: gonio brdf check {name}\n");
     print(&text)
 }
 
 /// Columns that text for people takes at most.
-const COLUMNS: usize = 80;
+pub(super) const COLUMNS: usize = 80;
 
 /// `text` in lines of at most 80 columns, broken at spaces; the second and later ones are indented.
-fn wrapped(text: &str, indent: usize) -> String {
+pub(super) fn wrapped(text: &str, indent: usize) -> String {
     let start = text.len() - text.trim_start().len();
     let mut lines = text[..start].to_owned();
     let mut column = start;
@@ -225,6 +253,7 @@ fn in_json(model: &ModelInfo) -> serde_json::Value {
             "default": p.default_value().map(|v| v.to_string()),
             "meaning": p.meaning,
         })).collect::<Vec<_>>(),
+        "presets": presets::in_json(&presets::sets_of(model)),
         "declares": declared.map(|d| json!({
             "reciprocal": d.reciprocal,
             "energy_conserving": d.energy_conserving,
