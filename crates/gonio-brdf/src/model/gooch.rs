@@ -76,16 +76,16 @@ pub const INFO: ModelInfo = ModelInfo {
     },
 };
 
-/// f = [t k_warm + (1 − t) k_cool]/(π cosθi) + ks/π cosᵖα, k_warm = warm + β kd, k_cool = cool + α kd, and t one of
+/// f = [t k_warm + (1 − t) k_cool]/(2π cosθi) + ks/π cosᵖα, k_warm = warm + β kd, k_cool = cool + α kd, and t one of
 ///
 /// - published: (1 + cosθi)/2 (Gooch et al., eq. 2, where t runs on to 0 on the side that the light does not reach)
 /// - hemisphere: cosθi
 ///
 /// with α = `cool_mix`, β = `warm_mix`, and in the highlight α the angle between ωi and the mirror image of ωr.
 ///
-/// The tone that one light makes does not fade with cosθi: the division takes back the cosine of irradiance (for cosθi ≥ 1e-3). So
-/// light that grazes the surface returns more than it brings, without a bound, and nothing is reciprocal. What faces away
-/// from every light is black, as reflection functions see no light from below.
+/// The tone that one light makes does not fade with cosθi: the division takes back the cosine of irradiance (for cosθi ≥ 1e-3). With
+/// 2π a uniform field shows the mean tone. Light that grazes the surface returns more than it brings, without a bound, and nothing is
+/// reciprocal. What faces away from every light is black, as reflection functions see no light from below.
 ///
 /// Sampling: the uniform hemisphere, mixed with the highlight's cosine power.
 #[derive(Debug, Clone, Copy)]
@@ -169,10 +169,10 @@ impl<R: Real, const N: usize> Gooch<R, N> {
         R::select(cos.gt(R::zero()), power, R::zero())
     }
 
-    /// Albedos for a viewer: of the tones, whose mean over the hemisphere counts twice, and of the highlight.
+    /// Albedos for a viewer: of the tones, their mean over the hemisphere, and of the highlight.
     #[inline(always)]
     fn shares(&self) -> [R; 2] {
-        let tones = R::lit(2.0) * mean(self.tone(R::lit(0.5)));
+        let tones = mean(self.tone(R::lit(0.5)));
         let highlight = R::lit(2.0) * mean(self.specular) / (self.exponent + R::lit(2.0));
         [tones + R::lit(1e-20), highlight]
     }
@@ -181,7 +181,7 @@ impl<R: Real, const N: usize> Gooch<R, N> {
 impl<R: Real, const N: usize> Brdf<R, N> for Gooch<R, N> {
     #[inline(always)]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-        let over = R::lit(FRAC_1_PI) / wi.z.max(R::lit(1e-3));
+        let over = R::lit(0.5 * FRAC_1_PI) / wi.z.max(R::lit(1e-3));
         let highlight = self.highlight(wi, wo) * R::lit(FRAC_1_PI);
         let f = add(
             scale(self.tone(wi.z), over),
@@ -238,7 +238,7 @@ mod tests {
             let radiance = m.eval_cos(around_axis(0.1, (1.0 - cos * cos).sqrt(), cos), wo);
             let expected = [t * (0.4 + 0.6) + (1.0 - t) * 0.2, t * 0.4, (1.0 - t) * 0.4];
             for (l, e) in radiance.into_iter().zip(expected) {
-                assert!((l - e * FRAC_1_PI).abs() < 1e-14, "{name}: {l} {e}");
+                assert!((l - 0.5 * e * FRAC_1_PI).abs() < 1e-14, "{name}: {l} {e}");
             }
         }
         // The highlight at its peak is ks/π; grey, black tones.
