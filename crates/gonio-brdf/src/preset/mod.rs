@@ -78,7 +78,7 @@ pub fn sets() -> Vec<PresetSet> {
         let aliases = info.aliases.iter().map(|a| a.name);
         std::iter::once(info.name).chain(aliases)
     });
-    names.flat_map(|name| sets_of(name)).collect()
+    names.flat_map(sets_of).collect()
 }
 
 /// The sets of a model, or of an alias, in the order in which a bare name is looked for; none for what is in no registry.
