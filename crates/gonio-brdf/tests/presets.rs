@@ -105,11 +105,18 @@ fn gaussian(a: &Angles, m: f64) -> f64 {
 /// Each set against the published formula with the published numbers of one material, `gold-paint`, written out here on their own.
 #[test]
 fn presets_mean_what_was_fitted() {
-    type Lobe = fn(&Angles) -> f64;
+    /// Name, factors of the channels, kd, ks, and the lobe for ks = 1.
+    type Case = (
+        &'static str,
+        [f64; 3],
+        [f64; 3],
+        [f64; 3],
+        fn(&Angles) -> f64,
+    );
     // The scales of the database's channels, which Ngan's numbers don't have.
     let channels = [1.0, 1.15, 1.66];
     let plain = [1.0; 3];
-    let cases: [(&str, [f64; 3], [f64; 3], [f64; 3], Lobe); 10] = [
+    let cases: [Case; 10] = [
         (
             "ward@ngan/gold-paint",
             channels,

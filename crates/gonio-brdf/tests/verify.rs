@@ -97,7 +97,7 @@ fn what_is_declared_costs_and_is_seen() {
         ("gltf:roughness=0", Property::EnergyConservation),
         ("burley:1,roughness=1", Property::EnergyConservation),
         (
-            "ward:alpha=0.5,specular=1,diffuse=0",
+            "ward-duer:alpha=0.3,specular=1,diffuse=0",
             Property::EnergyConservation,
         ),
         ("sheen-ltc:roughness=0.3", Property::Reciprocity),
