@@ -2,7 +2,6 @@
 
 use crate::geometry::{Geometry, Instance, Shape};
 use crate::light::{Light, Lights};
-use crate::scene::NO_LIGHT;
 use crate::{Camera, Material, Scene, SceneError};
 use gonio_env::Environment;
 use gonio_num::{Affine3, Vec3};
@@ -156,6 +155,8 @@ impl SceneBuilder {
             .instances
             .iter()
             .any(|i| !self.materials[i.material as usize].opacity.is_opaque());
+        let absorbing = self.materials.iter().any(Material::absorbs);
+        self.warn_of_bodies_turned_inside_out();
         let geometry = Arc::new(Geometry::build(self.shapes, self.instances)?);
         match geometry.degenerate_count() {
             0 => {}
@@ -172,10 +173,7 @@ impl SceneBuilder {
             self.lights,
             self.environment,
         );
-        if lights.is_empty() {
-            self.warnings.push(NO_LIGHT.into());
-        }
-        Ok(Scene {
+        let mut scene = Scene {
             name: self.name,
             geometry,
             materials: self.materials,
@@ -184,7 +182,31 @@ impl SceneBuilder {
             film_size: self.film_size,
             warnings: self.warnings,
             transparent,
-        })
+            absorbing,
+        };
+        scene.review_lights();
+        Ok(scene)
+    }
+}
+
+impl SceneBuilder {
+    /// A body of glass whose mesh is wound the other way round bends light the wrong way and absorbs outside of itself.
+    fn warn_of_bodies_turned_inside_out(&mut self) {
+        for index in 0..self.instances.len() {
+            let instance = &self.instances[index];
+            let material = &self.materials[instance.material as usize];
+            if material.is_boundary()
+                && let Some(Shape::Mesh(mesh)) = self.shapes.get(instance.shape as usize)
+                && mesh.check().is_ok()
+                && mesh.is_inside_out()
+            {
+                self.warn(format!(
+                    "a mesh of the transmitting material `{}` is turned inside out: its triangles face what they enclose, which is right \
+                     for the wall of a cavity alone",
+                    material.name
+                ));
+            }
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 //! The reflection equation alone (T13): one reflection of the light that comes straight from the lights.
 //!
 //! Lr(ωr) = Σᵢ Lᵢ f cosθᵢ over point, spot and directional lights (12), plus ∫ Li f cosθi dωi over area lights and the
-//! environment (13).
+//! environment (13). Where a surface transmits, the light may come from its other side.
 
-use super::vertex::{Vertex, arrive, environment_radiance};
+use super::vertex::{Arrival, Vertex, arrive, environment_radiance};
 use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::SampleStream;
@@ -56,7 +56,12 @@ impl Direct {
             }
         };
         let ray = vertex.point.spawn_ray(drawn.wi);
-        let (radiance, density) = match arrive(scene, &ray, 1, stream, counts) {
+        let interior = vertex.interior_toward(drawn.wi);
+        let Arrival {
+            vertex: next,
+            transmittance,
+        } = arrive(scene, &ray, interior, 1, stream, counts);
+        let (radiance, density) = match next {
             None => (
                 environment_radiance(scene, drawn.wi),
                 scene.lights.environment().map_or(0.0, |e| e.pdf(drawn.wi)),
@@ -66,9 +71,10 @@ impl Direct {
                 density_of_light(scene, vertex, &next, drawn.wi),
             ),
         };
+        let arriving = product(transmittance, radiance);
         sum(
             total,
-            scaled(product(drawn.weight, radiance), weight(density)),
+            scaled(product(drawn.weight, arriving), weight(density)),
         )
     }
 }

@@ -1,6 +1,6 @@
 //! Path tracing: the reflection equation, applied again to the light that other surfaces reflect (Kajiya 1986).
 
-use super::vertex::{Vertex, arrive};
+use super::vertex::{Arrival, Vertex, arrive};
 use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
 use gonio_radiometry::sequence::SampleStream;
 use gonio_scene::Scene;
@@ -8,12 +8,13 @@ use gonio_scene::Scene;
 /// Options of the path tracer.
 ///
 /// At each reflection one light is sampled and one direction is drawn by the reflection function; multiple importance
-/// sampling (Veach 1997, power heuristic) joins the two estimates of direct light.
+/// sampling (Veach 1997, power heuristic) joins the two estimates of direct light. Passing through a surface counts as a reflection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Path {
     /// Reflections that light may make on its way from a light to the camera; 0 shows lights alone.
     pub max_bounces: u32,
-    /// Reflections before Russian roulette may end a path. Roulette leaves the expected image as it is.
+    /// Reflections before Russian roulette may end a path. Roulette leaves the expected image as it is. It judges a path by the
+    /// energy that it carries, not by its radiance, which is scaled inside a body of glass.
     pub roulette_after: u32,
 }
 
@@ -38,6 +39,8 @@ impl Path {
     ) -> [f32; 3] {
         let mut total = [0.0; 3];
         let mut throughput = [1.0; 3];
+        // What takes the scaling of radiance by n² out of the throughput.
+        let mut unscaling = [1.0; 3];
         for bounce in 0..self.max_bounces {
             let base = dimension::of_bounce(bounce);
             let light = if vertex.model.is_delta() {
@@ -67,7 +70,9 @@ impl Path {
             if throughput == [0.0; 3] {
                 break;
             }
+            unscaling = product(unscaling, vertex.unscaling(drawn.wi));
             let ray = vertex.point.spawn_ray(drawn.wi);
+            let interior = vertex.interior_toward(drawn.wi);
             let weight = |light_density: f32| {
                 if drawn.delta {
                     1.0
@@ -75,7 +80,12 @@ impl Path {
                     power_heuristic(drawn.pdf, light_density)
                 }
             };
-            match arrive(scene, &ray, bounce + 1, stream, counts) {
+            let Arrival {
+                vertex: next,
+                transmittance,
+            } = arrive(scene, &ray, interior, bounce + 1, stream, counts);
+            throughput = product(throughput, transmittance);
+            match next {
                 None => {
                     let (radiance, density) = scene.lights.environment_radiance_and_pdf(drawn.wi);
                     let light = scaled(product(throughput, radiance), weight(density));
@@ -96,10 +106,8 @@ impl Path {
             }
 
             if bounce >= self.roulette_after {
-                let survival = throughput[0]
-                    .max(throughput[1])
-                    .max(throughput[2])
-                    .min(0.95);
+                let [r, g, b] = product(throughput, unscaling);
+                let survival = r.max(g).max(b).min(0.95);
                 stream.seek(base + dimension::ROULETTE);
                 if stream.next_1d() >= survival {
                     break;

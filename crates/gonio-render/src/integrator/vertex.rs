@@ -4,7 +4,7 @@ use super::{RayCounts, dimension, product, scaled};
 use gonio_brdf::{Brdf, Model, Sample};
 use gonio_num::{Frame, Vec3};
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{LightSample, LightTarget, Ray, Scene, SurfacePoint};
+use gonio_scene::{Body, Interior, LightSample, Ray, Scene, SurfacePoint};
 use std::borrow::Cow;
 
 /// A point on a surface with its reflection function, seen from one direction.
@@ -12,14 +12,20 @@ use std::borrow::Cow;
 pub struct Vertex<'a> {
     /// The point.
     pub point: SurfacePoint,
-    /// Local frame, facing the viewer: normal +z.
+    /// Local frame: normal +z on the viewer's side for a function that only reflects, on the outer side for one that transmits.
     pub frame: Frame<f32>,
     /// The reflection function.
     pub model: Cow<'a, Model<f32, 3>>,
+    /// Whether the reflection function transmits.
+    pub transmits: bool,
     /// Direction to the viewer, local.
     pub wo: Vec3<f32>,
     /// Direction to the viewer, world.
     pub wo_world: Vec3<f32>,
+    /// The bodies that the viewer's side of the surface lies in.
+    pub interior: Interior,
+    /// The body that the surface bounds, where bodies absorb.
+    pub boundary: Option<Body>,
     /// Approximate reflectance, for the auxiliary layer.
     pub albedo: [f32; 3],
     /// Index of the material.
@@ -28,27 +34,50 @@ pub struct Vertex<'a> {
     pub distance: f32,
 }
 
-/// Follows `ray` to the first surface that stops it; a surface of opacity α stops it with probability α. Nothing if the
-/// ray goes on to infinity.
+/// Where a ray ends.
+pub(super) struct Arrival<'a> {
+    /// The surface that stops it; nothing if it goes on to infinity.
+    pub vertex: Option<Vertex<'a>>,
+    /// The share of radiance that the bodies on the way leave, each component in \[0, 1].
+    pub transmittance: [f32; 3],
+}
+
+/// Follows `ray` to the first surface that stops it; a surface of opacity α stops it with probability α. Where it passes one that bounds a
+/// body it enters or leaves the body.
 ///
+/// - `interior`: the bodies that it starts in
 /// - `segment`: how many reflections the path has made, so that each part of it draws numbers of its own
 pub(super) fn arrive<'a>(
     scene: &'a Scene,
     ray: &Ray,
+    mut interior: Interior,
     segment: u32,
     stream: &mut SampleStream,
     counts: &mut RayCounts,
-) -> Option<Vertex<'a>> {
+) -> Arrival<'a> {
     let wo_world = -ray.direction;
     let mut ray = *ray;
     let mut travelled = 0.0;
+    let mut transmittance = [1.0; 3];
     for passed in 0..dimension::MOST_PASSED {
         counts.nearest += 1;
-        let point = scene.intersect(&ray)?;
+        let Some(point) = scene.intersect(&ray) else {
+            break;
+        };
         let shading = scene.shade(&point, wo_world);
+        let boundary = scene.boundary(&point, &shading);
+        let inner = wo_world.dot(point.ng) < 0.0;
+        let way = match &boundary {
+            Some(body) => interior.arrive(body, inner, point.t),
+            None => interior.transmittance(point.t),
+        };
+        transmittance = product(transmittance, way);
         if shading.alpha < 1.0 && passed + 1 < dimension::MOST_PASSED {
             stream.seek(dimension::of_opacity(segment, passed));
             if stream.next_1d() >= shading.alpha {
+                if let Some(body) = &boundary {
+                    interior.cross(body, !inner);
+                }
                 travelled += point.t;
                 let t_max = ray.t_max - point.t;
                 ray = point.spawn_ray(ray.direction);
@@ -56,18 +85,28 @@ pub(super) fn arrive<'a>(
                 continue;
             }
         }
-        return Some(Vertex {
+        let vertex = Vertex {
             frame: shading.frame,
             wo: shading.frame.to_local(wo_world),
             wo_world,
             model: shading.model,
+            transmits: shading.transmits,
+            interior,
+            boundary,
             albedo: shading.albedo,
             material: scene.geometry.instances()[point.instance as usize].material,
             distance: travelled + point.t,
             point,
-        });
+        };
+        return Arrival {
+            vertex: Some(vertex),
+            transmittance,
+        };
     }
-    None
+    Arrival {
+        vertex: None,
+        transmittance: product(transmittance, interior.transmittance(ray.t_max)),
+    }
 }
 
 /// Radiance of the environment from direction `d`; black without one.
@@ -79,13 +118,12 @@ pub(super) fn environment_radiance(scene: &Scene, d: Vec3<f32>) -> [f32; 3] {
 }
 
 impl Vertex<'_> {
-    /// f(ωi→ωr)·|cosθi| and the density of [`Vertex::sample`] for the world direction `wi`. Zero where `wi` and the
-    /// viewer are on different sides of the true surface, which an interpolated normal could otherwise let light through.
+    /// f(ωi→ωr)·|cosθi| and the density of [`Vertex::sample`] for the world direction `wi`. Zero where [`Vertex::admits`] says no.
     pub(super) fn eval_cos(&self, wi: Vec3<f32>) -> ([f32; 3], f32) {
-        if !self.same_side(wi) {
+        let local = self.frame.to_local(wi);
+        if !self.admits(wi, local) {
             return ([0.0; 3], 0.0);
         }
-        let local = self.frame.to_local(wi);
         self.model.eval_cos_and_pdf(local, self.wo)
     }
 
@@ -95,15 +133,62 @@ impl Vertex<'_> {
         if sample.pdf <= 0.0 {
             return None;
         }
-        sample.wi = self.frame.to_world(sample.wi);
-        self.same_side(sample.wi).then_some(sample)
+        let local = sample.wi;
+        sample.wi = self.frame.to_world(local);
+        self.admits(sample.wi, local).then_some(sample)
     }
 
+    /// Whether the reflection function may scatter light from `wi` to the viewer, as far as sides are concerned. Interpolated and mapped
+    /// normals could otherwise let light through a surface, or past it.
+    ///
+    /// A function that only reflects needs `wi` and the viewer on the same side of the true surface. For one that transmits it is the
+    /// true surface that decides whether light passes, and `wi` has to lie on the same side of the frame.
+    fn admits(&self, wi: Vec3<f32>, local: Vec3<f32>) -> bool {
+        if self.transmits {
+            wi.dot(self.point.ng) * local.z > 0.0
+        } else {
+            self.same_side(wi)
+        }
+    }
+
+    /// Whether `wi` and the viewer are on the same side of the true surface.
     fn same_side(&self, wi: Vec3<f32>) -> bool {
         wi.dot(self.point.ng) * self.wo_world.dot(self.point.ng) > 0.0
     }
 
-    /// Light from `sample` reflected toward the viewer, times the weight that `weight` gives it for the density with which
+    /// The normal of the frame, on the viewer's side.
+    pub(super) fn facing_normal(&self) -> Vec3<f32> {
+        if self.wo.z < 0.0 {
+            -self.frame.n
+        } else {
+            self.frame.n
+        }
+    }
+
+    /// The bodies that a ray leaving in the direction `wi` is inside of.
+    pub(super) fn interior_toward(&self, wi: Vec3<f32>) -> Interior {
+        let mut interior = self.interior;
+        if let Some(body) = &self.boundary
+            && !self.same_side(wi)
+        {
+            interior.cross(body, wi.dot(self.point.ng) < 0.0);
+        }
+        interior
+    }
+
+    /// n(ωi)²/n(ωr)², what takes the scaling of radiance by a refracting boundary out of a weight again: with it weights are shares of
+    /// energy (Veach 1997, §5.2). 1 where `wi` is on the viewer's side.
+    pub(super) fn unscaling(&self, wi: Vec3<f32>) -> [f32; 3] {
+        if !self.transmits || self.same_side(wi) {
+            return [1.0; 3];
+        }
+        let inwards = wi.dot(self.point.ng) < 0.0;
+        self.model
+            .relative_ior()
+            .map(|n| if inwards { n * n } else { 1.0 / (n * n) })
+    }
+
+    /// Light from `sample` scattered toward the viewer, times the weight that `weight` gives it for the density with which
     /// the reflection function would draw the same direction.
     pub(super) fn reflect_light(
         &self,
@@ -123,11 +208,11 @@ impl Vertex<'_> {
         if contribution == [0.0; 3] {
             return contribution;
         }
-        let ray = match sample.target {
-            LightTarget::Point(target) => self.point.spawn_ray_to(target),
-            LightTarget::Infinite => self.point.spawn_ray(sample.wi),
-        };
         counts.shadow += 1;
-        scaled(contribution, scene.transmittance(&ray))
+        let interior = self.interior_toward(sample.wi);
+        product(
+            contribution,
+            scene.transmittance(&self.point, sample.wi, sample.target, &interior),
+        )
     }
 }
