@@ -153,7 +153,10 @@ mod tests {
         };
         interior.cross(&tinted, true);
         let t = interior.transmittance(2.0);
-        for (found, expected) in t.into_iter().zip([1.0, (-1.0_f32).exp(), (-2.0_f32).exp()]) {
+        for (found, expected) in t
+            .into_iter()
+            .zip([1.0, Real::exp(-1.0_f32), Real::exp(-2.0_f32)])
+        {
             assert!((found - expected).abs() < 1e-6, "{t:?}");
         }
         assert_eq!(interior.transmittance(f32::INFINITY), [1.0, 0.0, 0.0]);

@@ -4,7 +4,7 @@ use crate::geometry::Shape;
 use crate::light::Light;
 use crate::material::{AlphaMode, Opacity};
 use crate::{Projection, Ray};
-use gonio_num::Affine3;
+use gonio_num::{Affine3, Real};
 
 const UP: Vec3<f32> = Vec3::new(0.0, 1.0, 0.0);
 
@@ -163,7 +163,7 @@ fn transmittance_within_bodies() {
     let mut builder = ball(veil(of("tinted", tinted), 0.5));
     let scene = builder.build().unwrap();
     let near = |found: [f32; 3], share: f32, way: f32| {
-        let expected = [0.0, 1.0, 2.0].map(|sigma: f32| share * (-sigma * way).exp());
+        let expected = [0.0, 1.0, 2.0].map(|sigma: f32| share * Real::exp(-sigma * way));
         assert!(
             found
                 .iter()
