@@ -234,10 +234,11 @@ fn take_sample(
         (pixel[1] as f32 + offset[1]) / height as f32,
     ];
     let ray = camera.ray(on_film, width as f32 / height as f32, lens);
+    let scene = around.scene;
     let interior = around.at(ray.origin);
     options
         .integrator
-        .radiance(around.scene, &ray, &interior, &mut stream, counts)
+        .radiance(scene, &ray, interior, &mut stream, counts)
 }
 
 /// The bodies that rays start in. Most cameras start all rays at one point, so the last one is remembered.
@@ -257,11 +258,11 @@ impl<'a> Surroundings<'a> {
     }
 
     /// [`Scene::interior_at`].
-    fn at(&mut self, p: Vec3<f32>) -> Interior {
-        if self.last.0 != p && self.scene.has_absorption() {
+    fn at(&mut self, p: Vec3<f32>) -> &Interior {
+        if self.scene.has_absorption() && self.last.0 != p {
             self.last = (p, self.scene.interior_at(p));
         }
-        self.last.1
+        &self.last.1
     }
 }
 

@@ -194,9 +194,9 @@ fn received(
 ) -> [f32; 3] {
     let frame = Frame::from_normal(n);
     let point = on_detector(scene, p, &frame);
+    let interior = scene.interior_at(point.offset_origin(n));
     let vertex = Vertex {
-        interior: scene.interior_at(point.offset_origin(n)),
-        boundary: None,
+        bounds_a_body: false,
         point,
         frame,
         model: Cow::Borrowed(receiver),
@@ -209,7 +209,7 @@ fn received(
     };
     options
         .integrator
-        .reflected(scene, vertex, stream, &mut RayCounts::default())
+        .reflected(scene, vertex, interior, stream, &mut RayCounts::default())
 }
 
 /// A point of a detector. Detectors often lie on a surface of the scene, up to rounding: rays start far enough from it not

@@ -47,6 +47,12 @@ impl Interior {
         &self.bodies[..usize::from(self.count)]
     }
 
+    /// Whether it is inside of no body.
+    #[inline]
+    pub fn is_outside(&self) -> bool {
+        self.count == 0
+    }
+
     /// The share of radiance that is left after a distance in the innermost body, each component in \[0, 1]; 1 outside. The distance
     /// may be infinite.
     #[inline]
@@ -57,17 +63,31 @@ impl Interior {
         }
     }
 
-    /// The share of radiance that is left of a way of this length that ends on a boundary, on its inner side or outer side. An inner
-    /// side tells that the way was through its body, and if no body was known to be around, that one is from here on.
+    /// `weight` times [`Interior::transmittance`].
     #[inline]
-    pub fn arrive(&mut self, boundary: &Body, inner: bool, distance: f32) -> [f32; 3] {
+    pub fn absorb(&self, weight: [f32; 3], distance: f32) -> [f32; 3] {
+        match self.bodies().last() {
+            None => weight,
+            Some(body) => body.absorb(weight, distance),
+        }
+    }
+
+    /// `weight` times the share of radiance that is left of a way of this length that ends on a boundary, on its inner or its outer side. An
+    /// inner side tells that the way was through its body, and if no body was known to be around, that one is from here on.
+    pub fn arrive(
+        &mut self,
+        boundary: &Body,
+        inner: bool,
+        weight: [f32; 3],
+        distance: f32,
+    ) -> [f32; 3] {
         if !inner {
-            return self.transmittance(distance);
+            return self.absorb(weight, distance);
         }
         if self.count == 0 {
             self.enter(*boundary);
         }
-        boundary.transmittance(distance)
+        boundary.absorb(weight, distance)
     }
 
     /// Goes through a boundary, into its body or out of it.
@@ -125,6 +145,15 @@ impl Body {
         let [r, g, b] = self.absorption;
         [left(r), left(g), left(b)]
     }
+
+    fn absorb(&self, weight: [f32; 3], distance: f32) -> [f32; 3] {
+        let left = self.transmittance(distance);
+        [
+            weight[0] * left[0],
+            weight[1] * left[1],
+            weight[2] * left[2],
+        ]
+    }
 }
 
 #[cfg(test)]
@@ -169,7 +198,7 @@ mod tests {
         let mut interior = Interior::OUTSIDE;
         interior.cross(&ball, true);
         assert_eq!(
-            interior.arrive(&bubble, false, 1.0),
+            interior.arrive(&bubble, false, [1.0; 3], 1.0),
             ball.transmittance(1.0)
         );
         interior.cross(&bubble, true);
@@ -209,7 +238,10 @@ mod tests {
         let mut interior = Interior::OUTSIDE;
         interior.cross(&glass, true);
         interior.cross(&wall, true);
-        assert_eq!(interior.arrive(&top, true, 1.0), top.transmittance(1.0));
+        assert_eq!(
+            interior.arrive(&top, true, [1.0; 3], 1.0),
+            top.transmittance(1.0)
+        );
         interior.cross(&top, false);
         assert!(interior.bodies().is_empty());
     }
@@ -218,7 +250,10 @@ mod tests {
     fn an_inner_side_tells_where_a_path_began() {
         let ocean = body(4, 0.3);
         let mut interior = Interior::OUTSIDE;
-        assert_eq!(interior.arrive(&ocean, true, 2.0), ocean.transmittance(2.0));
+        assert_eq!(
+            interior.arrive(&ocean, true, [1.0; 3], 2.0),
+            ocean.transmittance(2.0)
+        );
         assert_eq!(sigma(&interior), 0.3);
         interior.cross(&ocean, false);
         assert!(interior.bodies().is_empty());

@@ -5,7 +5,7 @@ use crate::interior::{Body, Interior};
 use crate::light::{Light, LightTarget, Lights};
 use crate::material::{Material, Shading, bounds_a_body};
 use crate::{Camera, Files, Ray, SceneError};
-use gonio_brdf::{Brdf, ModelSpec, registry};
+use gonio_brdf::{Brdf, Model, ModelSpec, registry};
 use gonio_env::Environment;
 use gonio_num::Vec3;
 use std::path::Path;
@@ -101,6 +101,7 @@ impl Scene {
     /// - `interior`: the bodies that the way begins in
     ///
     /// A surface that transmits stops such a way as others do: what it scatters comes along other ways.
+    #[inline]
     pub fn transmittance(
         &self,
         from: &SurfacePoint,
@@ -108,32 +109,38 @@ impl Scene {
         target: LightTarget,
         interior: &Interior,
     ) -> [f32; 3] {
-        match target {
-            LightTarget::Point(p) => {
-                let ray = from.spawn_ray_to(p);
-                self.transmittance_of(&ray, (p - from.p).length(), interior)
-            }
-            LightTarget::Infinite => {
-                self.transmittance_of(&from.spawn_ray(wi), f32::INFINITY, interior)
-            }
+        if self.transparent || !interior.is_outside() {
+            return self.transmittance_of_layers(from, wi, target, interior);
         }
+        let ray = match target {
+            LightTarget::Point(p) => from.spawn_ray_to(p),
+            LightTarget::Infinite => from.spawn_ray(wi),
+        };
+        let left = if self.occluded(&ray) { 0.0 } else { 1.0 };
+        [left; 3]
     }
 
-    /// The same for a ray that looks for surfaces, whose light comes from `distance`, at its end or just beyond.
-    fn transmittance_of(&self, ray: &Ray, distance: f32, interior: &Interior) -> [f32; 3] {
-        if !self.transparent {
-            return if self.occluded(ray) {
-                [0.0; 3]
-            } else {
-                interior.transmittance(distance)
-            };
+    fn transmittance_of_layers(
+        &self,
+        from: &SurfacePoint,
+        wi: Vec3<f32>,
+        target: LightTarget,
+        interior: &Interior,
+    ) -> [f32; 3] {
+        // A ray towards a light ends just short of it, light doesn't.
+        let (mut rest, mut left) = match target {
+            LightTarget::Point(p) => (from.spawn_ray_to(p), (p - from.p).length()),
+            LightTarget::Infinite => (from.spawn_ray(wi), f32::INFINITY),
+        };
+        if !self.transparent && self.occluded(&rest) {
+            return [0.0; 3];
         }
+        let direction = rest.direction;
         let mut passed = [1.0; 3];
         let mut interior = *interior;
-        let (mut rest, mut left) = (*ray, distance);
         for _ in 0..MAX_LAYERS {
             let Some(point) = self.intersect(&rest) else {
-                return times(passed, interior.transmittance(left));
+                return interior.absorb(passed, left);
             };
             let through = 1.0 - self.material(&point).opacity.at(&point);
             if through <= 0.0 {
@@ -141,18 +148,19 @@ impl Scene {
             }
             passed = passed.map(|p| p * through);
             if self.absorbing {
-                let inner = ray.direction.dot(point.ng) > 0.0;
-                match self.boundary(&point, &self.shade(&point, -ray.direction)) {
-                    None => passed = times(passed, interior.transmittance(point.t)),
-                    Some(body) => {
-                        passed = times(passed, interior.arrive(&body, inner, point.t));
-                        interior.cross(&body, !inner);
-                    }
+                let shading = self.shade(&point, -direction);
+                if self.bounds_a_body(&shading) {
+                    let body = self.body(&point, &shading.model);
+                    let inner = direction.dot(point.ng) > 0.0;
+                    passed = interior.arrive(&body, inner, passed, point.t);
+                    interior.cross(&body, !inner);
+                } else {
+                    passed = interior.absorb(passed, point.t);
                 }
             }
             left -= point.t;
             let t_max = rest.t_max - point.t;
-            rest = point.spawn_ray(ray.direction);
+            rest = point.spawn_ray(direction);
             rest.t_max = t_max;
         }
         [0.0; 3]
@@ -168,15 +176,22 @@ impl Scene {
         self.absorbing
     }
 
-    /// The body that a surface bounds, where bodies absorb at all. Nothing for a surface that doesn't transmit, or that neither refracts
-    /// nor absorbs: a thin pane has no inside.
+    /// Whether a surface bounds a body, if bodies absorb at all: not one that doesn't transmit, or that neither refracts nor absorbs, since a
+    /// thin pane has no inside.
     #[inline]
-    pub fn boundary(&self, point: &SurfacePoint, shading: &Shading<'_>) -> Option<Body> {
-        let bounds = self.absorbing && shading.transmits && bounds_a_body(&shading.model);
-        bounds.then(|| Body {
+    pub fn bounds_a_body(&self, shading: &Shading<'_>) -> bool {
+        self.absorbing && shading.transmits && bounds_a_body(&shading.model)
+    }
+
+    /// The body behind a surface with this reflection function.
+    ///
+    /// # Panics
+    /// If the point isn't one of this scene.
+    pub fn body(&self, point: &SurfacePoint, model: &Model<f32, 3>) -> Body {
+        Body {
             material: self.geometry.instances()[point.instance as usize].material,
-            absorption: shading.model.absorption(),
-        })
+            absorption: model.absorption(),
+        }
     }
 
     /// The bodies that the point `p` is inside of, where bodies absorb at all: those whose boundary is left more often than it is entered on
@@ -195,7 +210,9 @@ impl Scene {
             let Some(point) = self.intersect(&ray) else {
                 break;
             };
-            if let Some(body) = self.boundary(&point, &self.shade(&point, -ray.direction)) {
+            let shading = self.shade(&point, -ray.direction);
+            if self.bounds_a_body(&shading) {
+                let body = self.body(&point, &shading.model);
                 let known = |b: &Body| b.material == body.material;
                 if point.ng.dot(ray.direction) < 0.0 {
                     entered.cross(&body, true);
@@ -345,11 +362,6 @@ impl Scene {
             ));
         }
     }
-}
-
-/// a · b.
-fn times(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
 }
 
 /// The warning of a scene in the dark.

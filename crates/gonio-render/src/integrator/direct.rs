@@ -3,11 +3,11 @@
 //! Lr(ωr) = Σᵢ Lᵢ f cosθᵢ over point, spot and directional lights (12), plus ∫ Li f cosθi dωi over area lights and the
 //! environment (13). Where a surface transmits, the light may come from its other side.
 
-use super::vertex::{Arrival, Vertex, arrive, environment_radiance};
+use super::vertex::{Vertex, arrive, environment_radiance};
 use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::Scene;
+use gonio_scene::{Interior, Scene};
 
 /// Options of the direct integrator: none so far.
 ///
@@ -17,11 +17,12 @@ use gonio_scene::Scene;
 pub struct Direct;
 
 impl Direct {
-    /// Radiance that `vertex` reflects toward its viewer.
+    /// Radiance that `vertex` reflects toward its viewer, which is in the bodies of `interior`.
     pub(super) fn reflected(
         &self,
         scene: &Scene,
         vertex: &Vertex<'_>,
+        mut interior: Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {
@@ -33,7 +34,7 @@ impl Direct {
                 let Some(sample) = light.sample(&vertex.point, part, position) else {
                     continue;
                 };
-                let direct = vertex.reflect_light(scene, &sample, counts, |density| {
+                let direct = vertex.reflect_light(scene, &sample, &interior, counts, |density| {
                     if sample.delta {
                         1.0
                     } else {
@@ -56,11 +57,17 @@ impl Direct {
             }
         };
         let ray = vertex.point.spawn_ray(drawn.wi);
-        let interior = vertex.interior_toward(drawn.wi);
-        let Arrival {
-            vertex: next,
-            transmittance,
-        } = arrive(scene, &ray, interior, 1, stream, counts);
+        vertex.cross(scene, &mut interior, drawn.wi);
+        let mut throughput = drawn.weight;
+        let next = arrive(
+            scene,
+            &ray,
+            &mut interior,
+            &mut throughput,
+            1,
+            stream,
+            counts,
+        );
         let (radiance, density) = match next {
             None => (
                 environment_radiance(scene, drawn.wi),
@@ -71,10 +78,9 @@ impl Direct {
                 density_of_light(scene, vertex, &next, drawn.wi),
             ),
         };
-        let arriving = product(transmittance, radiance);
         sum(
             total,
-            scaled(product(drawn.weight, arriving), weight(density)),
+            scaled(product(throughput, radiance), weight(density)),
         )
     }
 }

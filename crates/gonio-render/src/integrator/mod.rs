@@ -48,8 +48,9 @@ impl Integrator {
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> FilmSample {
-        let arrival = vertex::arrive(scene, ray, *interior, 0, stream, counts);
-        let (radiance, first) = match arrival.vertex {
+        let (mut interior, mut left) = (*interior, [1.0; 3]);
+        let arrived = vertex::arrive(scene, ray, &mut interior, &mut left, 0, stream, counts);
+        let (radiance, first) = match arrived {
             None => (vertex::environment_radiance(scene, ray.direction), None),
             Some(vertex) => {
                 let first = FirstSurface {
@@ -59,28 +60,31 @@ impl Integrator {
                     material: vertex.material,
                 };
                 let emitted = scene.emitted(&vertex.point, -ray.direction);
-                let reflected = self.reflected(scene, vertex, stream, counts);
+                let reflected = self.reflected(scene, vertex, interior, stream, counts);
                 (sum(emitted, reflected), Some(first))
             }
         };
         FilmSample {
-            radiance: product(arrival.transmittance, radiance),
+            radiance: product(left, radiance),
             first,
         }
     }
 
     /// Estimates the radiance that `vertex` reflects or lets through toward its viewer, Lr(ωr) of the reflection equation (12, 13)
     /// \[W m⁻² sr⁻¹].
+    ///
+    /// - `interior`: the bodies on the viewer's side
     pub fn reflected(
         &self,
         scene: &Scene,
         vertex: Vertex<'_>,
+        interior: Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {
         match self {
-            Self::Direct(direct) => direct.reflected(scene, &vertex, stream, counts),
-            Self::Path(path) => path.reflected(scene, vertex, stream, counts),
+            Self::Direct(direct) => direct.reflected(scene, &vertex, interior, stream, counts),
+            Self::Path(path) => path.reflected(scene, vertex, interior, stream, counts),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Path tracing: the reflection equation, applied again to the light that other surfaces reflect (Kajiya 1986).
 
-use super::vertex::{Arrival, Vertex, arrive};
+use super::vertex::{Vertex, arrive};
 use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::Scene;
+use gonio_scene::{Interior, Scene};
 
 /// Options of the path tracer.
 ///
@@ -29,17 +29,18 @@ impl Default for Path {
 }
 
 impl Path {
-    /// Radiance that `vertex` reflects toward its viewer.
+    /// Radiance that `vertex` reflects toward its viewer, which is in the bodies of `interior`.
     pub(super) fn reflected<'a>(
         &self,
         scene: &'a Scene,
         mut vertex: Vertex<'a>,
+        mut interior: Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {
         let mut total = [0.0; 3];
         let mut throughput = [1.0; 3];
-        // What takes the scaling of radiance by n² out of the throughput.
+        // What takes the scaling of radiance by n² out of the throughput, for roulette.
         let mut unscaling = [1.0; 3];
         for bounce in 0..self.max_bounces {
             let base = dimension::of_bounce(bounce);
@@ -52,7 +53,7 @@ impl Path {
                 scene.lights.sample(&vertex.point, choice, position)
             };
             if let Some(light) = light {
-                let direct = vertex.reflect_light(scene, &light, counts, |density| {
+                let direct = vertex.reflect_light(scene, &light, &interior, counts, |density| {
                     if light.delta {
                         1.0
                     } else {
@@ -70,9 +71,9 @@ impl Path {
             if throughput == [0.0; 3] {
                 break;
             }
-            unscaling = product(unscaling, vertex.unscaling(drawn.wi));
+            vertex.unscale(&mut unscaling, drawn.wi);
+            vertex.cross(scene, &mut interior, drawn.wi);
             let ray = vertex.point.spawn_ray(drawn.wi);
-            let interior = vertex.interior_toward(drawn.wi);
             let weight = |light_density: f32| {
                 if drawn.delta {
                     1.0
@@ -80,11 +81,15 @@ impl Path {
                     power_heuristic(drawn.pdf, light_density)
                 }
             };
-            let Arrival {
-                vertex: next,
-                transmittance,
-            } = arrive(scene, &ray, interior, bounce + 1, stream, counts);
-            throughput = product(throughput, transmittance);
+            let next = arrive(
+                scene,
+                &ray,
+                &mut interior,
+                &mut throughput,
+                bounce + 1,
+                stream,
+                counts,
+            );
             match next {
                 None => {
                     let (radiance, density) = scene.lights.environment_radiance_and_pdf(drawn.wi);

@@ -4,7 +4,7 @@ use super::{RayCounts, dimension, product, scaled};
 use gonio_brdf::{Brdf, Model, Sample};
 use gonio_num::{Frame, Vec3};
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{Body, Interior, LightSample, Ray, Scene, SurfacePoint};
+use gonio_scene::{Interior, LightSample, Ray, Scene, SurfacePoint};
 use std::borrow::Cow;
 
 /// A point on a surface with its reflection function, seen from one direction.
@@ -22,10 +22,8 @@ pub struct Vertex<'a> {
     pub wo: Vec3<f32>,
     /// Direction to the viewer, world.
     pub wo_world: Vec3<f32>,
-    /// The bodies that the viewer's side of the surface lies in.
-    pub interior: Interior,
-    /// The body that the surface bounds, where bodies absorb.
-    pub boundary: Option<Body>,
+    /// Whether the surface bounds a body, where bodies absorb.
+    pub bounds_a_body: bool,
     /// Approximate reflectance, for the auxiliary layer.
     pub albedo: [f32; 3],
     /// Index of the material.
@@ -34,49 +32,49 @@ pub struct Vertex<'a> {
     pub distance: f32,
 }
 
-/// Where a ray ends.
-pub(super) struct Arrival<'a> {
-    /// The surface that stops it; nothing if it goes on to infinity.
-    pub vertex: Option<Vertex<'a>>,
-    /// The share of radiance that the bodies on the way leave, each component in \[0, 1].
-    pub transmittance: [f32; 3],
-}
-
 /// Follows `ray` to the first surface that stops it; a surface of opacity α stops it with probability α. Where it passes one that bounds a
-/// body it enters or leaves the body.
+/// body it enters or leaves the body. Nothing if the ray goes on to infinity.
 ///
-/// - `interior`: the bodies that it starts in
+/// - `interior`: the bodies that it starts in, then those that it arrives in
+/// - `weight`: is multiplied by what the bodies on the way leave of the radiance
 /// - `segment`: how many reflections the path has made, so that each part of it draws numbers of its own
 pub(super) fn arrive<'a>(
     scene: &'a Scene,
     ray: &Ray,
-    mut interior: Interior,
+    interior: &mut Interior,
+    weight: &mut [f32; 3],
     segment: u32,
     stream: &mut SampleStream,
     counts: &mut RayCounts,
-) -> Arrival<'a> {
+) -> Option<Vertex<'a>> {
     let wo_world = -ray.direction;
     let mut ray = *ray;
     let mut travelled = 0.0;
-    let mut transmittance = [1.0; 3];
     for passed in 0..dimension::MOST_PASSED {
         counts.nearest += 1;
         let Some(point) = scene.intersect(&ray) else {
-            break;
+            if !interior.is_outside() {
+                *weight = interior.absorb(*weight, ray.t_max);
+            }
+            return None;
         };
         let shading = scene.shade(&point, wo_world);
-        let boundary = scene.boundary(&point, &shading);
-        let inner = wo_world.dot(point.ng) < 0.0;
-        let way = match &boundary {
-            Some(body) => interior.arrive(body, inner, point.t),
-            None => interior.transmittance(point.t),
-        };
-        transmittance = product(transmittance, way);
+        let bounds_a_body = scene.bounds_a_body(&shading);
+        if bounds_a_body {
+            let (body, inner) = (
+                scene.body(&point, &shading.model),
+                wo_world.dot(point.ng) < 0.0,
+            );
+            *weight = interior.arrive(&body, inner, *weight, point.t);
+        } else if !interior.is_outside() {
+            *weight = interior.absorb(*weight, point.t);
+        }
         if shading.alpha < 1.0 && passed + 1 < dimension::MOST_PASSED {
             stream.seek(dimension::of_opacity(segment, passed));
             if stream.next_1d() >= shading.alpha {
-                if let Some(body) = &boundary {
-                    interior.cross(body, !inner);
+                if bounds_a_body {
+                    let inwards = ray.direction.dot(point.ng) < 0.0;
+                    interior.cross(&scene.body(&point, &shading.model), inwards);
                 }
                 travelled += point.t;
                 let t_max = ray.t_max - point.t;
@@ -85,28 +83,20 @@ pub(super) fn arrive<'a>(
                 continue;
             }
         }
-        let vertex = Vertex {
+        return Some(Vertex {
             frame: shading.frame,
             wo: shading.frame.to_local(wo_world),
             wo_world,
             model: shading.model,
             transmits: shading.transmits,
-            interior,
-            boundary,
+            bounds_a_body,
             albedo: shading.albedo,
             material: scene.geometry.instances()[point.instance as usize].material,
             distance: travelled + point.t,
             point,
-        };
-        return Arrival {
-            vertex: Some(vertex),
-            transmittance,
-        };
+        });
     }
-    Arrival {
-        vertex: None,
-        transmittance: product(transmittance, interior.transmittance(ray.t_max)),
-    }
+    None
 }
 
 /// Radiance of the environment from direction `d`; black without one.
@@ -165,35 +155,35 @@ impl Vertex<'_> {
         }
     }
 
-    /// The bodies that a ray leaving in the direction `wi` is inside of.
-    pub(super) fn interior_toward(&self, wi: Vec3<f32>) -> Interior {
-        let mut interior = self.interior;
-        if let Some(body) = &self.boundary
-            && !self.same_side(wi)
-        {
-            interior.cross(body, wi.dot(self.point.ng) < 0.0);
+    /// Leads from the bodies on the viewer's side to those on the side of `wi`.
+    pub(super) fn cross(&self, scene: &Scene, interior: &mut Interior, wi: Vec3<f32>) {
+        if self.bounds_a_body && !self.same_side(wi) {
+            let inwards = wi.dot(self.point.ng) < 0.0;
+            interior.cross(&scene.body(&self.point, &self.model), inwards);
         }
-        interior
     }
 
-    /// n(ωi)²/n(ωr)², what takes the scaling of radiance by a refracting boundary out of a weight again: with it weights are shares of
-    /// energy (Veach 1997, §5.2). 1 where `wi` is on the viewer's side.
-    pub(super) fn unscaling(&self, wi: Vec3<f32>) -> [f32; 3] {
+    /// Takes the scaling of radiance by a refracting boundary out of the weight of light from `wi` again, n(ωi)²/n(ωr)²: then weights
+    /// are shares of energy (Veach 1997, §5.2).
+    pub(super) fn unscale(&self, weight: &mut [f32; 3], wi: Vec3<f32>) {
         if !self.transmits || self.same_side(wi) {
-            return [1.0; 3];
+            return;
         }
         let inwards = wi.dot(self.point.ng) < 0.0;
-        self.model
-            .relative_ior()
-            .map(|n| if inwards { n * n } else { 1.0 / (n * n) })
+        for (w, n) in weight.iter_mut().zip(self.model.relative_ior()) {
+            *w *= if inwards { n * n } else { 1.0 / (n * n) };
+        }
     }
 
     /// Light from `sample` scattered toward the viewer, times the weight that `weight` gives it for the density with which
     /// the reflection function would draw the same direction.
+    ///
+    /// - `interior`: the bodies on the viewer's side
     pub(super) fn reflect_light(
         &self,
         scene: &Scene,
         sample: &LightSample,
+        interior: &Interior,
         counts: &mut RayCounts,
         weight: impl Fn(f32) -> f32,
     ) -> [f32; 3] {
@@ -209,10 +199,15 @@ impl Vertex<'_> {
             return contribution;
         }
         counts.shadow += 1;
-        let interior = self.interior_toward(sample.wi);
-        product(
-            contribution,
-            scene.transmittance(&self.point, sample.wi, sample.target, &interior),
-        )
+        let mut beyond;
+        let interior = if self.bounds_a_body {
+            beyond = *interior;
+            self.cross(scene, &mut beyond, sample.wi);
+            &beyond
+        } else {
+            interior
+        };
+        let left = scene.transmittance(&self.point, sample.wi, sample.target, interior);
+        product(contribution, left)
     }
 }

@@ -33,6 +33,8 @@ pub struct Material {
     pub double_sided: bool,
     spec: ModelSpec,
     model: Model<f32, 3>,
+    /// Whether `model` transmits, textures left out.
+    model_transmits: bool,
     bindings: Vec<Binding>,
     albedo: [f32; 3],
     /// The binding whose value is the albedo, if one drives the model's colour.
@@ -109,6 +111,7 @@ impl Material {
             opacity: Opacity::default(),
             double_sided: false,
             spec: spec.clone(),
+            model_transmits: model.transmits(),
             model,
             bindings: Vec::new(),
             albedo,
@@ -128,6 +131,7 @@ impl Material {
     /// [`SceneError::Brdf`] if the model can't be built; the material is then unchanged.
     pub fn replace_model(&mut self, spec: &ModelSpec) -> Result<(), SceneError> {
         self.model = spec.build()?;
+        self.model_transmits = self.model.transmits();
         self.spec = spec.clone();
         self.bindings.clear();
         self.albedo = normal_albedo(&self.model);

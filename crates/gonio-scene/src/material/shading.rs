@@ -42,6 +42,7 @@ impl Material {
     pub fn shade(&self, point: &SurfacePoint, wo: Vec3<f32>) -> Shading<'_> {
         let alpha = self.opacity.at(point);
         let mut albedo = self.albedo;
+        let mut transmits = self.model_transmits;
         let model = if self.bindings.is_empty() {
             Cow::Borrowed(&self.model)
         } else {
@@ -53,9 +54,9 @@ impl Material {
                     albedo = value;
                 }
             }
+            transmits = model.transmits();
             Cow::Owned(model)
         };
-        let transmits = model.transmits();
         let mut normal = facing(self.bent_normal(point), point.ng, wo);
         if transmits && point.ng.dot(wo) < 0.0 {
             normal = -normal;
