@@ -209,7 +209,7 @@ fn received(
     };
     options
         .integrator
-        .reflected(scene, vertex, interior, stream, &mut RayCounts::default())
+        .reflected(scene, vertex, &interior, stream, &mut RayCounts::default())
 }
 
 /// A point of a detector. Detectors often lie on a surface of the scene, up to rounding: rays start far enough from it not

@@ -101,7 +101,7 @@ impl Scene {
     /// - `interior`: the bodies that the way begins in
     ///
     /// A surface that transmits stops such a way as others do: what it scatters comes along other ways.
-    #[inline]
+    #[inline(always)]
     pub fn transmittance(
         &self,
         from: &SurfacePoint,
@@ -120,6 +120,7 @@ impl Scene {
         [left; 3]
     }
 
+    #[inline(never)]
     fn transmittance_of_layers(
         &self,
         from: &SurfacePoint,
@@ -172,6 +173,7 @@ impl Scene {
     }
 
     /// Whether some bodies absorb, so that paths have to know what they are inside of.
+    #[inline]
     pub fn has_absorption(&self) -> bool {
         self.absorbing
     }

@@ -22,7 +22,7 @@ impl Direct {
         &self,
         scene: &Scene,
         vertex: &Vertex<'_>,
-        mut interior: Interior,
+        interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {
@@ -34,7 +34,7 @@ impl Direct {
                 let Some(sample) = light.sample(&vertex.point, part, position) else {
                     continue;
                 };
-                let direct = vertex.reflect_light(scene, &sample, &interior, counts, |density| {
+                let direct = vertex.reflect_light(scene, &sample, interior, counts, |density| {
                     if sample.delta {
                         1.0
                     } else {
@@ -57,6 +57,7 @@ impl Direct {
             }
         };
         let ray = vertex.point.spawn_ray(drawn.wi);
+        let mut interior = *interior;
         vertex.cross(scene, &mut interior, drawn.wi);
         let mut throughput = drawn.weight;
         let next = arrive(

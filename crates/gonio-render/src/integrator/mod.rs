@@ -60,7 +60,7 @@ impl Integrator {
                     material: vertex.material,
                 };
                 let emitted = scene.emitted(&vertex.point, -ray.direction);
-                let reflected = self.reflected(scene, vertex, interior, stream, counts);
+                let reflected = self.reflected(scene, vertex, &interior, stream, counts);
                 (sum(emitted, reflected), Some(first))
             }
         };
@@ -78,7 +78,7 @@ impl Integrator {
         &self,
         scene: &Scene,
         vertex: Vertex<'_>,
-        interior: Interior,
+        interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {

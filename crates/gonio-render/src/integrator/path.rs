@@ -33,16 +33,22 @@ impl Path {
     pub(super) fn reflected<'a>(
         &self,
         scene: &'a Scene,
-        mut vertex: Vertex<'a>,
-        mut interior: Interior,
+        vertex: Vertex<'a>,
+        interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {
+        let mut interior = *interior;
         let mut total = [0.0; 3];
         let mut throughput = [1.0; 3];
         // What takes the scaling of radiance by n² out of the throughput, for roulette.
         let mut unscaling = [1.0; 3];
+        // In one place from arrival to departure: a vertex may be large.
+        let mut current = Some(vertex);
         for bounce in 0..self.max_bounces {
+            let Some(vertex) = &current else {
+                break;
+            };
             let base = dimension::of_bounce(bounce);
             let light = if vertex.model.is_delta() {
                 None
@@ -81,7 +87,8 @@ impl Path {
                     power_heuristic(drawn.pdf, light_density)
                 }
             };
-            let next = arrive(
+            let from = vertex.point.p;
+            current = arrive(
                 scene,
                 &ray,
                 &mut interior,
@@ -90,24 +97,19 @@ impl Path {
                 stream,
                 counts,
             );
-            match next {
-                None => {
-                    let (radiance, density) = scene.lights.environment_radiance_and_pdf(drawn.wi);
-                    let light = scaled(product(throughput, radiance), weight(density));
-                    total = sum(total, light);
-                    break;
-                }
-                Some(next) => {
-                    let radiance = scene.emitted(&next.point, next.wo_world);
-                    if radiance != [0.0; 3] {
-                        let density = scene.lights.pdf_area(vertex.point.p, &next.point, drawn.wi);
-                        total = sum(
-                            total,
-                            scaled(product(throughput, radiance), weight(density)),
-                        );
-                    }
-                    vertex = next;
-                }
+            let Some(next) = &current else {
+                let (radiance, density) = scene.lights.environment_radiance_and_pdf(drawn.wi);
+                let light = scaled(product(throughput, radiance), weight(density));
+                total = sum(total, light);
+                break;
+            };
+            let radiance = scene.emitted(&next.point, next.wo_world);
+            if radiance != [0.0; 3] {
+                let density = scene.lights.pdf_area(from, &next.point, drawn.wi);
+                total = sum(
+                    total,
+                    scaled(product(throughput, radiance), weight(density)),
+                );
             }
 
             if bounce >= self.roulette_after {
