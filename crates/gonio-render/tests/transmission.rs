@@ -5,14 +5,16 @@
 mod support;
 
 use gonio_brdf::part::fresnel;
+use gonio_brdf::{Brdf, ModelSpec};
 use gonio_env::Environment;
 use gonio_num::{Affine3, Vec3};
+use gonio_radiometry::sequence::{SampleStream, SamplerKind};
 use gonio_render::Integrator;
 use gonio_render::integrator::Path;
 use gonio_render::sensor::{self, Reading, SensorOptions};
 use gonio_scene::material::AlphaMode;
 use gonio_scene::{Light, Scene, SceneBuilder, Shape};
-use gonio_verify::statistics::z_test;
+use gonio_verify::statistics::{Moments, z_test};
 use std::f64::consts::PI;
 use support::*;
 
@@ -522,4 +524,97 @@ fn irradiance_within_a_body() {
     let a = (-0.5_f64).exp();
     let expected = PI * n * n * (1.0 - f) * a / (1.0 - f * a * a);
     assert_is(&reading, expected);
+}
+
+/// Surfaces that transmit and have directions of a density, so that lights are sampled on both sides of them: the registry's, and a sum.
+fn surfaces_with_densities() -> Vec<String> {
+    let models = gonio_brdf::registry::models().iter();
+    let transmit = models.filter(|info| {
+        let spec = ModelSpec::new(info.name).unwrap();
+        let built = spec.build::<f32, 3>();
+        built.is_ok_and(|model| model.transmits() && !model.is_delta())
+    });
+    let mut names: Vec<String> = transmit.map(|info| info.name.into()).collect();
+    names.push("sum(lambertian:reflectance=0.4, scaled(0.5, glass))".into());
+    names
+}
+
+/// A lamp before or behind a plane that scatters, seen from the side of +z or of −z: the radiance is the mean of the weights of the directions that
+/// the reflection function draws itself, if these meet the lamp. That needs no density, no light sample and no frame but the plane's own;
+/// both integrators have to find the same with all of these.
+#[test]
+fn light_from_both_sides_of_a_scattering_surface() {
+    let half = 0.6_f32;
+    for spec in surfaces_with_densities() {
+        let model = ModelSpec::parse(&spec).unwrap().build::<f32, 3>().unwrap();
+        for (lamp_side, viewer_side) in [(1.0_f32, 1.0_f32), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]
+        {
+            let mut scene = SceneBuilder::new("both sides");
+            let surface = material(&spec);
+            add(&mut scene, Shape::Rectangle, floor(0.0, 5.0), surface);
+            // The lamp, shining at the origin from straight above or below.
+            let shining = emitter("lambertian:reflectance=0", [1.0; 3]);
+            let placed = if lamp_side > 0.0 {
+                ceiling(1.0, half)
+            } else {
+                floor(-1.0, half)
+            };
+            add(&mut scene, Shape::Rectangle, placed, shining);
+            let scene = scene.build().unwrap();
+            // `floor` turns local z to world y, and local y to world −z.
+            let wo = Vec3::new(0.3, 0.2, viewer_side).normalize();
+            let mut moments = Moments::new();
+            for k in 0..40_000 {
+                let mut stream = SampleStream::new(SamplerKind::Independent, 11, 0, k);
+                let s = model.sample(wo, stream.next_3d());
+                let hits = s.pdf > 0.0
+                    && s.wi.z * lamp_side > 0.0
+                    && s.wi.x.abs().max(s.wi.y.abs()) < half * s.wi.z.abs();
+                moments.push(if hits { f64::from(s.weight[1]) } else { 0.0 });
+            }
+            let from = Vec3::new(wo.x, wo.z, -wo.y) * 0.8;
+            let one = Integrator::Path(Path {
+                max_bounces: 1,
+                roulette_after: 4,
+            });
+            for integrator in [one, INTEGRATORS[0]] {
+                let reading = along(&scene, from, from * -1.25, integrator);
+                let error = reading.standard_error.unwrap()[1];
+                let variance = error * error + moments.variance_of_mean();
+                let p = |scale: f64| {
+                    let difference = scale * reading.value[1] - moments.mean();
+                    if difference.abs() <= ROUNDING * moments.mean() {
+                        1.0
+                    } else {
+                        z_test(difference, variance).p_value
+                    }
+                };
+                let place = format!("{spec} {lamp_side} {viewer_side} {integrator:?}");
+                assert!(p(1.0) > FALSE_POSITIVE, "{place} {reading:?} {moments:?}");
+                // Where light arrives at all the control is noticed.
+                if moments.mean() > 10.0 * variance.sqrt() {
+                    assert!(p(2.0) < FALSE_POSITIVE, "{place}");
+                }
+            }
+        }
+    }
+}
+
+/// In uniform light of radiance 1 on both sides of a plane, a sum of ρ = 0.4 and half of a clear boundary shows a viewer outside
+/// 0.4 + ½ (F + (1 − F)/n²). From the inner side its diffuse part, which only reflects, is black: ½ (F + (1 − F) n²).
+#[test]
+fn a_sum_of_reflection_and_transmission() {
+    let n: f64 = 1.5;
+    let f = reflectance(1.0, n);
+    let mut scene = SceneBuilder::new("sum");
+    let surface = material("sum(lambertian:reflectance=0.4, scaled(0.5, glass))");
+    add(&mut scene, Shape::Rectangle, floor(0.0, 5.0), surface);
+    uniform(&mut scene, 1.0);
+    let scene = scene.build().unwrap();
+    for integrator in INTEGRATORS {
+        let above = along(&scene, -DOWN, DOWN, integrator);
+        assert_is(&above, 0.4 + 0.5 * (f + (1.0 - f) / (n * n)));
+        let below = along(&scene, DOWN, -DOWN, integrator);
+        assert_is(&below, 0.5 * (f + (1.0 - f) * n * n));
+    }
 }
