@@ -18,7 +18,8 @@ def _rgb(*value):
 
 
 def _absorbing(*sigma):
-    return {"type": "homogeneous", "albedo": 0.0, "sigma_t": _rgb(*sigma)}
+    # Mitsuba takes a colour above 1 for a mistake.
+    return {"type": "homogeneous", "albedo": 0.0, "sigma_t": _rgb(*(s / 2 for s in sigma)), "scale": 2.0}
 
 
 def get(name, resolution):
