@@ -98,7 +98,7 @@ def _transmitting(bsdf, absorption):
     if bsdf["type"] == "roughdielectric":
         if bsdf.get("distribution", "beckmann") != "ggx":
             raise ValueError(f"no equal of the material {bsdf}")
-        parameters.append(f"alpha = {float(bsdf['alpha'])!r}")
+        parameters += [f"alpha = {float(bsdf['alpha'])!r}", 'masking = "smith"', 'interreflection = "none"']
     return f'model = "{names[bsdf["type"]]}"\nparams = {{ {", ".join(parameters)} }}'
 
 
