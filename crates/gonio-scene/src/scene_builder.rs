@@ -5,6 +5,7 @@ use crate::light::{Light, Lights};
 use crate::{Camera, Material, Scene, SceneError};
 use gonio_env::Environment;
 use gonio_num::{Affine3, Vec3};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Collects the parts of a scene.
@@ -187,13 +188,15 @@ impl SceneBuilder {
         scene.review_lights();
         Ok(scene)
     }
-}
 
-impl SceneBuilder {
     /// A body of glass whose mesh is wound the other way round bends light the wrong way and absorbs outside of itself.
     fn warn_of_bodies_turned_inside_out(&mut self) {
+        let mut seen = HashSet::new();
         for index in 0..self.instances.len() {
             let instance = &self.instances[index];
+            if !seen.insert((instance.shape, instance.material)) {
+                continue;
+            }
             let material = &self.materials[instance.material as usize];
             if material.is_boundary()
                 && let Some(Shape::Mesh(mesh)) = self.shapes.get(instance.shape as usize)

@@ -61,10 +61,8 @@ pub(super) fn arrive<'a>(
         let shading = scene.shade(&point, wo_world);
         let bounds_a_body = scene.bounds_a_body(&shading);
         if bounds_a_body {
-            let (body, inner) = (
-                scene.body(&point, &shading.model),
-                wo_world.dot(point.ng) < 0.0,
-            );
+            let body = scene.body(&point, &shading.model);
+            let inner = wo_world.dot(point.ng) < 0.0;
             *weight = interior.arrive(&body, inner, *weight, point.t);
         } else if !interior.is_outside() {
             *weight = interior.absorb(*weight, point.t);
