@@ -16,6 +16,7 @@ pub mod lafortune;
 pub mod lambertian;
 pub mod mirror;
 pub mod mix;
+pub mod openpbr;
 pub mod oren_nayar;
 pub mod phong;
 pub mod retro_reflective;
@@ -233,6 +234,8 @@ models! {
     Scaled: scaled,
     /// A coat of varnish over a model (T9b).
     Coat: coat,
+    /// OpenPBR Surface 1.1.
+    OpenPbr: openpbr,
 }
 
 impl<R: Number, const N: usize> Model<R, N> {
