@@ -348,7 +348,10 @@ fn setting_a_parameter_is_building_with_it() {
                     };
                     (Value::Number(x), [x as f32; 3])
                 }
-                Kind::Colour { .. } => (Value::Colour([0.25, 0.5, 0.75]), [0.25, 0.5, 0.75]),
+                Kind::Colour { low, high, .. } => {
+                    let c = [0.25, 0.5, 0.75].map(|x: f64| x.clamp(low, high));
+                    (Value::Colour(c), c.map(|x| x as f32))
+                }
                 _ => {
                     assert!(ParameterSlot::find(info.name, p.name).is_err());
                     continue;
