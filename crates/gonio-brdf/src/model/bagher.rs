@@ -9,7 +9,7 @@ use crate::part::special::exp_m1;
 use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
 use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density};
-use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
+use std::f64::consts::FRAC_1_PI;
 
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
@@ -69,7 +69,7 @@ pub const INFO: ModelInfo = ModelInfo {
         ParameterInfo::colour("masking_k", (1.0, 1000.0), Some([40.0; 3]), "k of G₁"),
         ParameterInfo::colour(
             "masking_theta0_rad",
-            (-1.0, FRAC_PI_2),
+            (-1.0, 1.5),
             Some([0.09; 3]),
             "θ₀ of G₁: up to this angle of incidence nothing is masked",
         ),
