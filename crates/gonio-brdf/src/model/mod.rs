@@ -1,7 +1,7 @@
 //! The models, one file each, and [`Model`], the enum that holds any of them.
 //!
 //! To add one: write its file beside these, with its formula, its `INFO` and its tests; then add its `mod` line and its
-//! line in `models!` below.
+//! line in `models!` below. One that is made of other models stands after `composites` and is a [`Composite`].
 
 pub mod ashikhmin_premoze;
 pub mod ashikhmin_shirley;
@@ -44,10 +44,26 @@ pub(crate) trait Castable<R: Real, const N: usize> {
     fn over<S: Number>(&self, f: &impl Fn(R) -> S) -> Self::Over<S>;
 }
 
-/// What is done with a model in its own type: the choice among models then stands outside the loop.
+/// A model made of others. Its parts can be of any type that reflects: a batch evaluates each of them as a batch of its own.
+pub(crate) trait Composite<R: Real, const N: usize> {
+    /// The model over another number type, with other parts.
+    type With<S: Real, P: Brdf<S, N>>: Brdf<S, N>;
+    /// Each number converted by `number`, each part by `part`.
+    fn with<'a, S: Real, P: Brdf<S, N>>(
+        &'a self,
+        number: &impl Fn(R) -> S,
+        part: &impl Fn(&'a Model<R, N>) -> P,
+    ) -> Self::With<S, P>
+    where
+        R: 'a;
+}
+
+/// What is done with a model in its own type: the choice among models then stands outside the loop. One of the two is called, once.
 pub(crate) trait Visitor<R: Real, const N: usize> {
-    /// Called once.
+    /// The model is no composite.
     fn visit<B: Castable<R, N>>(self, model: &B);
+    /// The model is made of others.
+    fn visit_composite<C: Composite<R, N>>(self, model: &C);
 }
 
 /// [`Brdf::eval`] of one model, as a function of its own.
@@ -76,42 +92,43 @@ work!(EvalAndPdfOf: eval_and_pdf -> ([R; N], R));
 work!(SampleOf: sample -> Sample<R, N>);
 
 macro_rules! models {
-    ($($(#[$doc:meta])* $variant:ident: $module:ident,)*) => {
+    ($($(#[$doc:meta])* $variant:ident: $module:ident,)*; composites $($(#[$cdoc:meta])* $composite:ident: $cmodule:ident,)*) => {
         /// Any reflection function of the registry.
         #[derive(Debug, Clone)]
         pub enum Model<R: Real, const N: usize> {
             $($(#[$doc])* $variant($module::$variant<R, N>),)*
+            $($(#[$cdoc])* $composite($cmodule::$composite<R, N, Self>),)*
         }
 
         /// Every model's entry.
-        pub(crate) const INFOS: &[ModelInfo] = &[$($module::INFO,)*];
+        pub(crate) const INFOS: &[ModelInfo] = &[$($module::INFO,)* $($cmodule::INFO,)*];
 
         // Each model's code is a function of its own: a caller would get that of every model, a sum of sums that of every pair,
         // and a compiler would choke on it. Batches choose the model once, through `visit`.
         impl<R: Number, const N: usize> Brdf<R, N> for Model<R, N> {
             fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-                match self { $(Self::$variant(m) => R::out_of_line(EvalOf::<_, R, N>(m, wi, wo)),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(EvalOf::<_, R, N>(m, wi, wo)),)* $(Self::$composite(m) => R::out_of_line(EvalOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-                match self { $(Self::$variant(m) => R::out_of_line(PdfOf::<_, R, N>(m, wi, wo)),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(PdfOf::<_, R, N>(m, wi, wo)),)* $(Self::$composite(m) => R::out_of_line(PdfOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
-                match self { $(Self::$variant(m) => R::out_of_line(EvalAndPdfOf::<_, R, N>(m, wi, wo)),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(EvalAndPdfOf::<_, R, N>(m, wi, wo)),)* $(Self::$composite(m) => R::out_of_line(EvalAndPdfOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-                match self { $(Self::$variant(m) => R::out_of_line(SampleOf::<_, R, N>(m, wo, u)),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(SampleOf::<_, R, N>(m, wo, u)),)* $(Self::$composite(m) => R::out_of_line(SampleOf::<_, R, N>(m, wo, u)),)* }
             }
             fn albedo_estimate(&self, wo: Vec3<R>) -> R {
-                match self { $(Self::$variant(m) => m.albedo_estimate(wo),)* }
+                match self { $(Self::$variant(m) => m.albedo_estimate(wo),)* $(Self::$composite(m) => m.albedo_estimate(wo),)* }
             }
             fn transmits(&self) -> bool {
-                match self { $(Self::$variant(m) => Brdf::<R, N>::transmits(m),)* }
+                match self { $(Self::$variant(m) => Brdf::<R, N>::transmits(m),)* $(Self::$composite(m) => Brdf::<R, N>::transmits(m),)* }
             }
             fn relative_ior(&self) -> [R; N] {
-                match self { $(Self::$variant(m) => m.relative_ior(),)* }
+                match self { $(Self::$variant(m) => m.relative_ior(),)* $(Self::$composite(m) => m.relative_ior(),)* }
             }
             fn absorption(&self) -> [R; N] {
-                match self { $(Self::$variant(m) => m.absorption(),)* }
+                match self { $(Self::$variant(m) => m.absorption(),)* $(Self::$composite(m) => m.absorption(),)* }
             }
         }
 
@@ -129,26 +146,29 @@ macro_rules! models {
                 $(if info.name == $module::INFO.name {
                     return $module::$variant::from_spec(spec).map(Self::$variant);
                 })*
+                $(if info.name == $cmodule::INFO.name {
+                    return $cmodule::$composite::from_spec(spec).map(Self::$composite);
+                })*
                 unreachable!("invariant: every entry of the registry is in this list")
             }
 
             /// The same model with another number type, each number converted by `f`.
-            pub fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Model<S, N> {
-                match self { $(Self::$variant(m) => Model::$variant(m.cast(f)),)* }
+            pub fn cast<S: Number>(&self, f: &impl Fn(R) -> S) -> Model<S, N> {
+                match self { $(Self::$variant(m) => Model::$variant(m.cast(f)),)* $(Self::$composite(m) => Model::$composite(m.with(f, &|part| part.cast(f))),)* }
             }
 
             /// Calls the visitor with the model in its own type.
             pub(crate) fn visit<V: Visitor<R, N>>(&self, visitor: V) {
-                match self { $(Self::$variant(m) => visitor.visit(m),)* }
+                match self { $(Self::$variant(m) => visitor.visit(m),)* $(Self::$composite(m) => visitor.visit_composite(m),)* }
             }
 
             /// The registry's entry.
             pub fn info(&self) -> &'static ModelInfo {
-                match self { $(Self::$variant(_) => &const { $module::INFO },)* }
+                match self { $(Self::$variant(_) => &const { $module::INFO },)* $(Self::$composite(_) => &const { $cmodule::INFO },)* }
             }
 
             fn set(&mut self, index: usize, value: [R; 3]) {
-                match self { $(Self::$variant(m) => m.set($module::INFO.parameters[index].name, value),)* }
+                match self { $(Self::$variant(m) => m.set($module::INFO.parameters[index].name, value),)* $(Self::$composite(m) => m.set($cmodule::INFO.parameters[index].name, value),)* }
             }
         }
     };
@@ -205,14 +225,17 @@ models! {
     Toon: toon,
     /// Gooch et al. 1998: warm and cool tones of technical illustration (T20).
     Gooch: gooch,
+    /// A measured table (T19).
+    Table: table,;
+
+    composites
+
     /// A sum of models (T9b).
     Sum: sum,
     /// Two models in shares (T9b).
     Mix: mix,
     /// A model times a colour.
     Scaled: scaled,
-    /// A measured table (T19).
-    Table: table,
 }
 
 impl<R: Number, const N: usize> Model<R, N> {
