@@ -8,6 +8,7 @@ pub mod ashikhmin_shirley;
 pub mod bagher;
 pub mod blinn_phong;
 pub mod burley;
+pub mod disney;
 pub mod eon;
 pub mod gltf;
 pub mod gooch;
@@ -213,6 +214,8 @@ models! {
     RoughDielectric: rough_dielectric,
     /// A thin pane of glass.
     ThinDielectric: thin_dielectric,
+    /// Burley 2012 and 2015: Disney's principled models.
+    Disney: disney,
     /// The metallic-roughness material of glTF 2.0.
     Gltf: gltf,
     /// Estevez & Kulla 2017: sheen by microfacets.

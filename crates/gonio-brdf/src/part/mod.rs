@@ -4,12 +4,15 @@
 pub mod albedo;
 pub mod ashikhmin_lobe;
 pub mod boundary_loss;
+pub(crate) mod clearcoat;
 pub(crate) mod colour;
 pub mod dielectric;
 pub mod diffuse_and_lobe;
 pub mod distribution;
+pub(crate) mod facet_pair;
 pub mod fresnel;
 pub mod geometry;
+pub mod gloss;
 pub mod interreflection;
 pub mod inverse_power;
 pub mod low_lobe;
