@@ -112,10 +112,7 @@ fn what_is_declared_costs_and_is_seen() {
             Property::Reciprocity,
         ),
         ("gooch", Property::Reciprocity),
-        (
-            "bagher@silver-metallic-paint2",
-            Property::EnergyConservation,
-        ),
+        ("bagher@white-paint", Property::EnergyConservation),
         (
             "low-microfacet:specular=300,diffuse=0",
             Property::EnergyConservation,
