@@ -90,7 +90,7 @@ fn declares(_: &ModelSpec) -> Declares {
 /// - D = K e^(−x) x^−p/(π cos⁴θh), x = a + tan²θh/a, with K such that ∫ D cosθh dh = 1: the distribution `sgd` of
 ///   `torrance-sparrow` (a = α²)
 /// - F = F₀ + (1 − F₀)(1 − cosθ′)⁵ − F₁ cosθ′, not below 0
-/// - G₁ = 1 − Λ (exp(c (θ − θ₀)ᵏ) − 1) for θ > θ₀, else 1; kept within [0, 1]: a rational fit to the masking that D has
+/// - G₁ = 1 − Λ (exp(c (θ − θ₀)ᵏ) − 1) for θ > θ₀, else 1; kept within [0, 1]: a curve fitted to the masking that D has
 ///
 /// Reciprocal. The factor 1/π is 4/π times what facets reflect, and with F and G₁ free the lobe may reflect more than arrives: the numbers
 /// are those of a fit, whose scale is in ks.
