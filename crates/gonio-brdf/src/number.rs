@@ -1,12 +1,57 @@
-//! [`Number`], a [`Real`] through which a measured table can be read.
+//! [`Number`], a [`Real`] through which a measured table can be read, and [`Index`], what addresses it.
 
 use gonio_num::Real;
 use gonio_num::dual::Dual;
 use gonio_num::expr::Expr;
-use gonio_num::lanes::Lanes;
+use gonio_num::lanes::{LaneMask, Lanes};
+use std::fmt::Debug;
+
+/// Whole numbers from 0 that address a table: `u32`, or one a lane. Arithmetic wraps around at 2³²; [`Number::gather`] limits
+/// what comes out of it to the table.
+pub trait Index: Copy + Debug {
+    /// The same number in every lane.
+    fn splat(i: u32) -> Self;
+    /// self + i.
+    fn plus(self, i: Self) -> Self;
+    /// self · factor.
+    fn times(self, factor: u32) -> Self;
+}
 
 /// A [`Real`] with which models, tables included, can be evaluated.
+///
+/// A table in memory is read in three steps, each of them over lanes: [`Number::cell`] finds where a coordinate lies,
+/// [`Index`] makes an address of it, [`Number::gather`] fetches the numbers that stand there.
 pub trait Number: Real {
+    /// What addresses a table.
+    type Index: Index;
+
+    /// The largest whole number ≤ self, limited to 0 … `last`; 0 for a NaN. `last` < 2²⁴.
+    fn index(self, last: u32) -> Self::Index;
+
+    /// The whole number as a real; exact below 2²⁴.
+    fn from_index(i: Self::Index) -> Self;
+
+    /// `a` where the mask is true, `b` elsewhere.
+    fn select_index(mask: Self::Mask, a: Self::Index, b: Self::Index) -> Self::Index;
+
+    /// The `K` consecutive numbers of `table` that begin at `at`; `at` is limited to the last place where `K` numbers stand.
+    ///
+    /// What is looked up together should stand together: one look-up of four numbers costs a batch little more than one of a
+    /// single number.
+    ///
+    /// # Panics
+    /// If `table` has fewer than `K` numbers.
+    fn gather<const K: usize>(table: &[f32], at: Self::Index) -> [Self; K];
+
+    /// Between which of the nodes 0 … `nodes` − 1 self lies, and how far: (i, t) with self = i + t and t in [0, 1], where self is
+    /// limited to [0, `nodes` − 1] and i to `nodes` − 2; (0, 0) for a NaN. 2 ≤ `nodes` ≤ 2²⁴.
+    #[inline(always)]
+    fn cell(self, nodes: u32) -> (Self::Index, Self) {
+        let x = self.clamp(Self::zero(), Self::lit(f64::from(nodes - 1)));
+        let i = x.index(nodes - 2);
+        (i, x - Self::from_index(i))
+    }
+
     /// Applies the opaque function `f` to numbers that are computed in double precision, lane by lane.
     ///
     /// For what arithmetic over [`Real`] can't express: searching and addressing a table in memory. Derivatives through it are
@@ -17,7 +62,66 @@ pub trait Number: Real {
     ) -> [Self; M];
 }
 
+impl Index for u32 {
+    #[inline(always)]
+    fn splat(i: u32) -> Self {
+        i
+    }
+    #[inline(always)]
+    fn plus(self, i: Self) -> Self {
+        self.wrapping_add(i)
+    }
+    #[inline(always)]
+    fn times(self, factor: u32) -> Self {
+        self.wrapping_mul(factor)
+    }
+}
+
+/// The place of `K` numbers in `table`: `at`, or the last that there is.
+#[inline(always)]
+fn window<const K: usize>(table: &[f32], at: u32) -> &[f32; K] {
+    assert!(
+        table.len() >= K,
+        "a table of {} numbers has no {K}",
+        table.len()
+    );
+    let at = (at as usize).min(table.len() - K);
+    table[at..]
+        .first_chunk()
+        .expect("invariant: K numbers stand from there on")
+}
+
+macro_rules! scalar_index {
+    ($t:ty) => {
+        type Index = u32;
+        #[inline(always)]
+        fn index(self, last: u32) -> u32 {
+            // Saturating: negative numbers and NaN become 0.
+            (self as u32).min(last)
+        }
+        #[inline(always)]
+        fn from_index(i: u32) -> Self {
+            i as $t
+        }
+        #[inline(always)]
+        fn select_index(mask: bool, a: u32, b: u32) -> u32 {
+            if mask { a } else { b }
+        }
+        #[inline(always)]
+        fn gather<const K: usize>(table: &[f32], at: u32) -> [Self; K] {
+            let found = window::<K>(table, at);
+            let mut y = [0.0; K];
+            for k in 0..K {
+                y[k] = <$t>::from(found[k]);
+            }
+            y
+        }
+    };
+}
+
 impl Number for f64 {
+    scalar_index!(f64);
+
     #[inline]
     fn through<const K: usize, const M: usize>(
         x: [Self; K],
@@ -28,6 +132,8 @@ impl Number for f64 {
 }
 
 impl Number for f32 {
+    scalar_index!(f32);
+
     #[inline]
     fn through<const K: usize, const M: usize>(
         x: [Self; K],
@@ -46,7 +152,75 @@ impl Number for f32 {
     }
 }
 
+/// One whole number a lane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LaneIndex<const N: usize>(pub [u32; N]);
+
+impl<const N: usize> Index for LaneIndex<N> {
+    #[inline(always)]
+    fn splat(i: u32) -> Self {
+        Self([i; N])
+    }
+    #[inline(always)]
+    fn plus(self, i: Self) -> Self {
+        let mut r = self;
+        for lane in 0..N {
+            r.0[lane] = self.0[lane].wrapping_add(i.0[lane]);
+        }
+        r
+    }
+    #[inline(always)]
+    fn times(self, factor: u32) -> Self {
+        let mut r = self;
+        for lane in 0..N {
+            r.0[lane] = self.0[lane].wrapping_mul(factor);
+        }
+        r
+    }
+}
+
 impl<const N: usize> Number for Lanes<N> {
+    type Index = LaneIndex<N>;
+
+    #[inline(always)]
+    fn index(self, last: u32) -> LaneIndex<N> {
+        let mut r = LaneIndex([0; N]);
+        for lane in 0..N {
+            r.0[lane] = self.0[lane].index(last);
+        }
+        r
+    }
+
+    #[inline(always)]
+    fn from_index(i: LaneIndex<N>) -> Self {
+        let mut r = Self([0.0; N]);
+        for lane in 0..N {
+            r.0[lane] = i.0[lane] as f32;
+        }
+        r
+    }
+
+    #[inline(always)]
+    fn select_index(mask: LaneMask<N>, a: LaneIndex<N>, b: LaneIndex<N>) -> LaneIndex<N> {
+        let mut r = a;
+        for lane in 0..N {
+            r.0[lane] = if mask.0[lane] { a.0[lane] } else { b.0[lane] };
+        }
+        r
+    }
+
+    #[inline(always)]
+    fn gather<const K: usize>(table: &[f32], at: LaneIndex<N>) -> [Self; K] {
+        let mut y = [Self([0.0; N]); K];
+        for lane in 0..N {
+            let found = window::<K>(table, at.0[lane]);
+            for k in 0..K {
+                y[k].0[lane] = found[k];
+            }
+        }
+        y
+    }
+
     #[inline]
     fn through<const K: usize, const M: usize>(
         x: [Self; K],
@@ -68,6 +242,35 @@ impl<const N: usize> Number for Lanes<N> {
 }
 
 impl<R: Number, const P: usize> Number for Dual<R, P> {
+    type Index = R::Index;
+
+    #[inline(always)]
+    fn index(self, last: u32) -> R::Index {
+        self.value.index(last)
+    }
+
+    /// A whole number's derivative is 0: within a cell it is constant.
+    #[inline(always)]
+    fn from_index(i: R::Index) -> Self {
+        Self::constant(R::from_index(i))
+    }
+
+    #[inline(always)]
+    fn select_index(mask: R::Mask, a: R::Index, b: R::Index) -> R::Index {
+        R::select_index(mask, a, b)
+    }
+
+    /// What a table holds is constant.
+    #[inline(always)]
+    fn gather<const K: usize>(table: &[f32], at: R::Index) -> [Self; K] {
+        let found = R::gather::<K>(table, at);
+        let mut y = [Self::constant(R::zero()); K];
+        for k in 0..K {
+            y[k].value = found[k];
+        }
+        y
+    }
+
     fn through<const K: usize, const M: usize>(
         x: [Self; K],
         f: &dyn Fn([f64; K]) -> [f64; M],
@@ -105,11 +308,141 @@ impl<R: Number, const P: usize> Number for Dual<R, P> {
 }
 
 impl Number for Expr {
+    type Index = u32;
+
+    fn index(self, _last: u32) -> u32 {
+        0
+    }
+
+    fn from_index(_i: u32) -> Self {
+        Self::zero()
+    }
+
+    fn select_index(_mask: Self::Mask, _a: u32, b: u32) -> u32 {
+        b
+    }
+
+    /// 0: memory can't be recorded. [`crate::record`] refuses models that would read it.
+    fn gather<const K: usize>(_table: &[f32], _at: u32) -> [Self; K] {
+        [Self::zero(); K]
+    }
+
     /// 0: an opaque function can't be recorded. [`crate::record`] refuses models that would call it.
     fn through<const K: usize, const M: usize>(
         _x: [Self; K],
         _f: &dyn Fn([f64; K]) -> [f64; M],
     ) -> [Self; M] {
         [Self::zero(); M]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gonio_num::dispatch::{InstructionSet, Kernel, dispatch_on};
+
+    const TABLE: [f32; 8] = [1.0, 3.0, 2.0, 8.0, -4.0, 0.5, 0.25, 7.0];
+
+    /// The table at x in [0, 7], linear between its nodes.
+    #[inline(always)]
+    fn interpolate<R: Number>(x: R) -> R {
+        let (i, t) = x.cell(8);
+        let [low, high] = R::gather(&TABLE, i);
+        t.lerp(low, high)
+    }
+
+    /// Entry 3 below x = 3, entry 6 from there on.
+    #[inline(always)]
+    fn chosen<R: Number>(x: R) -> R {
+        let high = R::Index::splat(1).plus(R::Index::splat(1)).times(3);
+        let i = R::select_index(x.lt(R::lit(3.0)), R::Index::splat(3), high);
+        R::gather::<1>(&TABLE, i)[0] + R::from_index(i)
+    }
+
+    #[test]
+    fn cells_are_limited_and_nan_is_the_first() {
+        for (x, i, t) in [
+            (0.0, 0, 0.0),
+            (2.25, 2, 0.25),
+            (7.0, 6, 1.0),
+            (7.5, 6, 1.0),
+            (1e30, 6, 1.0),
+            (f64::INFINITY, 6, 1.0),
+            (-0.5, 0, 0.0),
+            (f64::NEG_INFINITY, 0, 0.0),
+            (f64::NAN, 0, 0.0),
+        ] {
+            assert_eq!(x.cell(8), (i, t), "{x}");
+            assert_eq!((x as f32).cell(8), (i, t as f32), "{x}");
+        }
+        assert_eq!(interpolate(2.25f64), 0.75 * 2.0 + 0.25 * 8.0);
+        assert_eq!(interpolate(7.0f64), 7.0);
+        assert_eq!((chosen(2.9f64), chosen(3.0f64)), (11.0, 6.25));
+        // The largest whole number that is exact in single precision.
+        assert_eq!(16_777_215.0f32.index(16_777_215), 16_777_215);
+        assert_eq!(f32::from_index(16_777_215), 16_777_215.0);
+    }
+
+    #[test]
+    fn addresses_are_limited_to_the_table() {
+        assert_eq!(f32::gather::<3>(&TABLE, 1), [3.0, 2.0, 8.0]);
+        assert_eq!(f64::gather::<3>(&TABLE, 6), [0.5, 0.25, 7.0]);
+        assert_eq!(f64::gather::<8>(&TABLE, u32::MAX), TABLE.map(f64::from));
+        // Arithmetic wraps instead of panicking.
+        assert_eq!(u32::MAX.plus(3).times(u32::MAX), 0u32.wrapping_sub(2));
+    }
+
+    #[test]
+    #[should_panic(expected = "a table of 8 numbers has no 9")]
+    fn a_table_that_is_too_short_is_refused() {
+        let _ = Lanes::<8>::gather::<9>(&TABLE, LaneIndex::splat(0));
+    }
+
+    struct Batch<'a> {
+        x: &'a [f32],
+        result: &'a mut [f32],
+    }
+
+    impl Kernel for Batch<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn run<const N: usize>(self) {
+            for (x, result) in self.x.chunks(N).zip(self.result.chunks_mut(N)) {
+                let x = Lanes::<N>::load_or(x, 0.0);
+                (interpolate(x) + chosen(x)).store(result);
+            }
+        }
+    }
+
+    #[test]
+    fn lanes_read_what_single_numbers_read() {
+        let x: Vec<f32> = (-20..100)
+            .map(|k| k as f32 * 0.1)
+            .chain([f32::NAN, 1e30])
+            .collect();
+        for set in InstructionSet::ALL {
+            if !set.is_available() {
+                eprintln!("skipped: this machine has no {}", set.name());
+                continue;
+            }
+            let mut result = vec![0.0; x.len()];
+            dispatch_on(
+                set,
+                Batch {
+                    x: &x,
+                    result: &mut result,
+                },
+            );
+            for (x, y) in x.iter().zip(result) {
+                let single = interpolate(*x) + chosen(*x);
+                assert_eq!(single.to_bits(), y.to_bits(), "{} {x}", set.name());
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_are_the_slopes_of_the_cells() {
+        let y = interpolate(Dual::<f64, 1>::variable(2.25, 0));
+        assert_eq!((y.value, y.partials), (3.5, [6.0]));
     }
 }
