@@ -2,7 +2,7 @@
 //!
 //! Directions are structures of arrays. Results have the same bits as those of a single call in `f32`, on any machine.
 //! A batch is several times faster than single calls for the closed-form models; `Sum` and `Scaled` dispatch for each
-//! group of lanes, and `Table` reads its memory lane by lane.
+//! group of lanes, and a `Table` of cells reads its memory lane by lane.
 
 use crate::model::Visitor;
 use crate::{Brdf, Model};
@@ -122,6 +122,12 @@ pub fn eval_on<const N: usize>(
             "results must have the directions' length"
         );
     }
+    if let Model::Table(table) = model
+        && let Some((adaptive, factor)) = table.batched()
+    {
+        adaptive.eval_batch(set, factor, [wi, wo], three(result));
+        return;
+    }
     dispatch_on(
         set,
         Eval {
@@ -146,6 +152,12 @@ pub fn pdf_on<const N: usize>(
 ) {
     wi.check(result.len());
     wo.check(result.len());
+    if let Model::Table(table) = model
+        && let Some((adaptive, _)) = table.batched()
+    {
+        adaptive.pdf_batch(set, [wi, wo], result);
+        return;
+    }
     dispatch_on(
         set,
         Pdf {
@@ -179,6 +191,18 @@ pub fn sample_on<const N: usize>(
         same,
         "directions, numbers and results must have the same length"
     );
+    if let Model::Table(table) = model
+        && let Some((adaptive, factor)) = table.batched()
+    {
+        let result = Samples {
+            wi: result.wi,
+            weight: three(result.weight),
+            pdf: result.pdf,
+            delta: result.delta,
+        };
+        adaptive.sample_batch(set, factor, wo, u, result);
+        return;
+    }
     dispatch_on(
         set,
         Draw {
@@ -188,6 +212,12 @@ pub fn sample_on<const N: usize>(
             result,
         },
     );
+}
+
+/// The slices of three colour components.
+fn three<T, const N: usize>(slices: [T; N]) -> [T; 3] {
+    let mut slices = slices.into_iter();
+    std::array::from_fn(|_| slices.next().expect("invariant: a measurement has three"))
 }
 
 // A kernel splats the model's numbers over the lanes once, then chooses the model once, outside the loop.
