@@ -46,7 +46,7 @@ for alphas in [(0.1, 0.1), (0.3, 0.3), (0.7, 0.7), (0.1, 0.4), (0.5, 0.2)]:
     for name, visible in [("ggx", True), ("beckmann", False)]:
         ours = (
             f"{name}:alpha_x={alphas[0]},alpha_y={alphas[1]},masking=smith,"
-            f"interreflection=off,eta={ETA},k={K}"
+            f"interreflection=none,eta={ETA},k={K}"
         )
         CASES.append((ours, rough(name, *alphas, visible)))
 CASES.append((f"mirror:eta={ETA},k={K}", {"type": "conductor", "eta": rgb(ETA), "k": rgb(K)}))

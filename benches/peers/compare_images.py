@@ -6,6 +6,8 @@ folder with `scenes.py`, whose `get(name, resolution)` returns Mitsuba scene dic
 
     python benches/peers/compare_images.py --peers FOLDER --gonio target/release/gonio --work OUT [SCENE ...]
 
+The scenes of `glass_scenes.py`, beside this file, need no folder: `--peers` may be left out.
+
 Gonio makes `--seeds` independent images of `--spp` samples a pixel, Mitsuba 16, which are kept in OUT and used again.
 `SCENE@N` renders Mitsuba's depth N instead of 8: N - 1 reflections; `SCENE@direct` compares Gonio's direct integrator with
 Mitsuba's depth 2.
@@ -36,6 +38,7 @@ import numpy as np
 
 mi.set_variant("llvm_ad_rgb")
 
+import glass_scenes
 import mitsuba_to_gonio as convert
 
 RESOLUTION = 256
@@ -52,11 +55,15 @@ GOLD = {"type": "roughconductor", "material": "Au", "distribution": "ggx", "alph
 
 
 def scene_named(module, name):
-    """The scene dictionary and the scene's name in files: `mesh-gold` is the scene `mesh` with gold for what is replaced."""
+    """The scene dictionary: `mesh-gold` is the scene `mesh` with gold for what is replaced."""
     base, _, depth = name.partition("@")
-    base, _, material = base.partition("-")
-    scene = dict(module.get(base, RESOLUTION))
-    scene["integrator"] = {"type": "path", "max_depth": 2 if depth == "direct" else int(depth or 8)}
+    if base in glass_scenes.NAMES:
+        material, scene = "", dict(glass_scenes.get(base, RESOLUTION))
+    else:
+        base, _, material = base.partition("-")
+        scene = dict(module.get(base, RESOLUTION))
+    kind = scene["integrator"]["type"]
+    scene["integrator"] = {"type": kind, "max_depth": 2 if depth == "direct" else int(depth or 8)}
     return convert.adapted(scene, GOLD if material == "gold" else DIFFUSE)
 
 
@@ -162,7 +169,7 @@ def compare(name, ours, theirs, seconds, args):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", default=["cornell", "cornell@direct", "ibl", "mesh", "mesh-gold", "lights", "veach"])
-    parser.add_argument("--peers", type=pathlib.Path, required=True, help="folder with scenes.py and its assets")
+    parser.add_argument("--peers", type=pathlib.Path, help="folder with scenes.py and its assets, for other scenes than those of glass")
     parser.add_argument("--gonio", type=pathlib.Path, required=True, help="the release build of the command")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for scenes, images and maps")
     parser.add_argument("--seeds", type=int, default=16, help="images of Gonio, at least 2")
@@ -170,9 +177,11 @@ def main():
     parser.add_argument("--sampler", default="independent")
     args = parser.parse_args()
     args.work.mkdir(parents=True, exist_ok=True)
-    spec = importlib.util.spec_from_file_location("peer_scenes", args.peers.resolve() / "scenes.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    module = None
+    if args.peers:
+        spec = importlib.util.spec_from_file_location("peer_scenes", args.peers.resolve() / "scenes.py")
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
     print(f"{'scene':16s} {'gonio':>9s} {'mitsuba':>9s} {'sigma':>7s} {'difference':>11s} {'pixels':>8s} {'blocks':>7s} {'rms':>6s}   spp/s of gonio, mitsuba [thousands]")
     passed = True
     for name in args.scenes:

@@ -1,7 +1,8 @@
 """Writes a Mitsuba 3 scene dictionary as a Gonio scene (TOML).
 
 What is read: `perspective` sensors of square images, `envmap` and `constant` emitters, `rectangle`, `cube`, `sphere` and `ply` shapes,
-`area` emitters, and the materials `diffuse`, `roughconductor` (GGX), and both inside `twosided`. Anything else is an error.
+`area` emitters, the materials `diffuse`, `roughconductor` (GGX), and both inside `twosided`, and the materials that transmit, `dielectric`,
+`thindielectric` and `roughdielectric` (GGX), with media inside that absorb alone. Anything else is an error.
 
 Differences between the two renderers that this has to bridge:
 
@@ -11,6 +12,8 @@ Differences between the two renderers that this has to bridge:
   column is -z, and rows lie at texel centres (θ = (j + ½)π/H). So the panorama is turned by half a circle and its rows are
   resampled to 2 `FINER` (H - 1) + 1 rows: for even H this puts rows, to a thousandth of their distance, where Mitsuba has its two
   rows on both sides of the horizon, at whose edge the radiance usually jumps.
+- A medium belongs to a shape in Mitsuba, inside or outside of it; in Gonio it is a parameter of the boundary's material, and what lies in the
+  body needs to say nothing.
 - Mitsuba's masking is Smith's, separable, without light that facets pass on: `masking = "smith"`, `interreflection = "off"`.
 - Shapes that name no material are `diffuse` of 0.5, or black if they are lights.
 """
@@ -33,6 +36,10 @@ _FACES = [
 ]
 
 
+# Materials that are of both sides.
+_TRANSMITTING = ("dielectric", "thindielectric", "roughdielectric")
+
+
 def _default(shape):
     shines = any(isinstance(v, dict) and v.get("type") == "area" for v in shape.values())
     return {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.0 if shines else 0.5] * 3}}
@@ -40,7 +47,7 @@ def _default(shape):
 
 def _bsdf_key(shape):
     """The key under which a shape has its material, or `bsdf`."""
-    materials = ("diffuse", "roughconductor", "roughplastic", "twosided", "ref")
+    materials = ("diffuse", "roughconductor", "roughplastic", "twosided", "ref", *_TRANSMITTING)
     return next((k for k, v in shape.items() if isinstance(v, dict) and v.get("type") in materials), "bsdf")
 
 
@@ -61,7 +68,7 @@ def adapted(scene, replacement):
             bsdf = scene[bsdf["id"]]
         if bsdf["type"] == "roughplastic":
             bsdf = replacement
-        if bsdf["type"] != "twosided":
+        if bsdf["type"] not in ("twosided", *_TRANSMITTING):
             bsdf = {"type": "twosided", "inside": bsdf}
         shape[key] = bsdf
         scene[name] = shape
@@ -78,8 +85,37 @@ def _list(values):
     return "[" + ", ".join(repr(float(x)) for x in np.asarray(values).ravel()) + "]"
 
 
-def _model(bsdf):
+def _transmitting(bsdf, absorption):
+    """The model of a boundary or a pane. Its index is what Mitsuba makes of the media's numbers or names."""
+    eta = float(np.array(mi.traverse(mi.load_dict(bsdf))["eta"]).ravel()[0])
+    names = {"dielectric": "smooth-dielectric", "thindielectric": "thin-dielectric", "roughdielectric": "rough-dielectric"}
+    parameters = [f"ior = {eta!r}"]
+    for theirs, ours in (("specular_reflectance", "reflectance"), ("specular_transmittance", "transmittance")):
+        if theirs in bsdf:
+            parameters.append(f"{ours} = {_list(_rgb(bsdf[theirs]))}")
+    if absorption:
+        parameters.append(f"absorption = {_list(absorption)}")
+    if bsdf["type"] == "roughdielectric":
+        if bsdf.get("distribution", "beckmann") != "ggx":
+            raise ValueError(f"no equal of the material {bsdf}")
+        parameters += [f"alpha = {float(bsdf['alpha'])!r}", 'masking = "smith"', 'interreflection = "none"']
+    return f'model = "{names[bsdf["type"]]}"\nparams = {{ {", ".join(parameters)} }}'
+
+
+def _absorption(shape):
+    """The absorption coefficient of what is inside a shape; nothing without a medium there."""
+    medium = shape.get("interior")
+    if medium is None:
+        return None
+    if medium["type"] != "homogeneous" or medium.get("albedo") != 0.0:
+        raise ValueError(f"only media that absorb alone are written, not {medium}")
+    return [medium.get("scale", 1.0) * sigma for sigma in _rgb(medium["sigma_t"])]
+
+
+def _model(bsdf, absorption=None):
     """The model and its parameters, as lines of TOML."""
+    if bsdf["type"] in _TRANSMITTING:
+        return _transmitting(bsdf, absorption)
     while bsdf["type"] == "twosided":
         bsdf = next(v for v in bsdf.values() if isinstance(v, dict))
     if bsdf["type"] == "diffuse":
@@ -163,7 +199,7 @@ def write(name, scene, folder):
     for key, shape in _shapes(scene).items():
         emitter = next((v for v in shape.values() if isinstance(v, dict) and v.get("type") == "area"), None)
         emission = f"emission = {_list(_rgb(emitter['radiance']))}\n" if emitter else ""
-        text.append(f'[[material]]\nname = "{key}"\n{_model(shape[_bsdf_key(shape)])}\n{emission}')
+        text.append(f'[[material]]\nname = "{key}"\n{_model(shape[_bsdf_key(shape)], _absorption(shape))}\n{emission}')
         kind, places = _placements(shape)
         if kind == "mesh" and not shape.get("face_normals"):
             raise ValueError("only meshes with face_normals")

@@ -1,17 +1,19 @@
 //! Checks and chores of this repository, run as `cargo xtask NAME`.
 
+mod fuzz;
 mod house;
 mod links;
 
 use std::process::ExitCode;
 
 const HELP: &str = "\
-Usage: cargo xtask <check>
+Usage: cargo xtask <job>
 
   floors   no crate depends on a higher floor, or on another of its own
   files    no source file is longer than 600 lines
   links    documents link to files that exist; every page of the book is in its summary
-  house    all of them";
+  house    all of them
+  fuzz     run each fuzz target for --seconds N (60); needs a C++ compiler";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -22,6 +24,11 @@ fn main() -> ExitCode {
         ["house"] => house::floors()
             .and_then(|()| house::files())
             .and_then(|()| links::links()),
+        ["fuzz"] => fuzz::run(60),
+        ["fuzz", "--seconds", n] => match n.parse() {
+            Ok(seconds) if seconds > 0 => fuzz::run(seconds),
+            _ => Err(format!("`{n}` seconds: expected a whole number from 1")),
+        },
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
             Ok(())

@@ -2,9 +2,9 @@
 //!
 //! Directions are structures of arrays. Results have the same bits as those of a single call in `f32`, on any machine.
 //! A batch is several times faster than single calls for the closed-form models; `Sum` and `Scaled` dispatch for each
-//! group of lanes, and a `Table` of cells reads its memory lane by lane.
+//! group of lanes, and `Table` reads its memory lane by lane.
 
-use crate::model::Visitor;
+use crate::model::{Castable, Visitor};
 use crate::{Brdf, Model};
 use gonio_num::dispatch::{InstructionSet, Kernel, dispatch_on};
 use gonio_num::lanes::Lanes;
@@ -122,21 +122,7 @@ pub fn eval_on<const N: usize>(
             "results must have the directions' length"
         );
     }
-    if let Model::Table(table) = model
-        && let Some((adaptive, factor)) = table.batched()
-    {
-        adaptive.eval_batch(set, factor, [wi, wo], three(result));
-        return;
-    }
-    dispatch_on(
-        set,
-        Eval {
-            model,
-            wi,
-            wo,
-            result,
-        },
-    );
+    model.visit(On(set, Eval { wi, wo, result }));
 }
 
 /// As [`pdf`], under a given instruction set.
@@ -152,21 +138,7 @@ pub fn pdf_on<const N: usize>(
 ) {
     wi.check(result.len());
     wo.check(result.len());
-    if let Model::Table(table) = model
-        && let Some((adaptive, _)) = table.batched()
-    {
-        adaptive.pdf_batch(set, [wi, wo], result);
-        return;
-    }
-    dispatch_on(
-        set,
-        Pdf {
-            model,
-            wi,
-            wo,
-            result,
-        },
-    );
+    model.visit(On(set, Pdf { wi, wo, result }));
 }
 
 /// As [`sample`], under a given instruction set.
@@ -191,63 +163,54 @@ pub fn sample_on<const N: usize>(
         same,
         "directions, numbers and results must have the same length"
     );
-    if let Model::Table(table) = model
-        && let Some((adaptive, factor)) = table.batched()
-    {
-        let result = Samples {
-            wi: result.wi,
-            weight: three(result.weight),
-            pdf: result.pdf,
-            delta: result.delta,
-        };
-        adaptive.sample_batch(set, factor, wo, u, result);
-        return;
+    model.visit(On(set, Draw { wo, u, result }));
+}
+
+/// The model, of which a compiler knows nothing from one step to the next. Otherwise it makes a loop of its own for every combination
+/// of a model's choices, which never change in the loop: much code for nothing measurable.
+#[inline(always)]
+fn opaque<B>(model: &B) -> &B {
+    std::hint::black_box(model)
+}
+
+/// What is done over lanes, with a model in its own type.
+trait Batch<const N: usize> {
+    fn run<const L: usize, B: Brdf<Lanes<L>, N>>(self, model: &B);
+}
+
+/// A batch on an instruction set. The model is chosen first and the instruction set then, so that each model's loop is a function
+/// of its own.
+struct On<T>(InstructionSet, T);
+
+impl<T: Batch<N>, const N: usize> Visitor<f32, N> for On<T> {
+    fn visit<B: Castable<f32, N>>(self, model: &B) {
+        dispatch_on(self.0, Chosen(model, self.1));
     }
-    dispatch_on(
-        set,
-        Draw {
-            model,
-            wo,
-            u,
-            result,
-        },
-    );
 }
 
-/// The slices of three colour components.
-fn three<T, const N: usize>(slices: [T; N]) -> [T; 3] {
-    let mut slices = slices.into_iter();
-    std::array::from_fn(|_| slices.next().expect("invariant: a measurement has three"))
-}
+/// A batch with its model: a kernel splats the model's numbers over the lanes once.
+struct Chosen<'a, B, T, const N: usize>(&'a B, T);
 
-// A kernel splats the model's numbers over the lanes once, then chooses the model once, outside the loop.
-macro_rules! kernel {
-    ($name:ident) => {
-        impl<const N: usize> Kernel for $name<'_, N> {
-            type Output = ();
-            #[inline(always)]
-            fn run<const L: usize>(self) {
-                let lanes: Model<Lanes<L>, N> = self.model.cast(&Lanes::splat);
-                lanes.visit(self);
-            }
-        }
-    };
+impl<B: Castable<f32, N>, T: Batch<N>, const N: usize> Kernel for Chosen<'_, B, T, N> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const L: usize>(self) {
+        self.1.run(&self.0.over(&Lanes::<L>::splat));
+    }
 }
 
 struct Eval<'a, const N: usize> {
-    model: &'a Model<f32, N>,
     wi: Directions<'a>,
     wo: Directions<'a>,
     result: [&'a mut [f32]; N],
 }
-kernel!(Eval);
 
-impl<const L: usize, const N: usize> Visitor<Lanes<L>, N> for Eval<'_, N> {
+impl<const N: usize> Batch<N> for Eval<'_, N> {
     #[inline(always)]
-    fn visit<B: Brdf<Lanes<L>, N>>(self, model: &B) {
+    fn run<const L: usize, B: Brdf<Lanes<L>, N>>(self, model: &B) {
         let mut at = 0;
         while at < self.wo.len() {
-            let f = model.eval(self.wi.load(at), self.wo.load(at));
+            let f = opaque(model).eval(self.wi.load(at), self.wo.load(at));
             for k in 0..N {
                 f[k].store(&mut self.result[k][at..]);
             }
@@ -256,20 +219,18 @@ impl<const L: usize, const N: usize> Visitor<Lanes<L>, N> for Eval<'_, N> {
     }
 }
 
-struct Pdf<'a, const N: usize> {
-    model: &'a Model<f32, N>,
+struct Pdf<'a> {
     wi: Directions<'a>,
     wo: Directions<'a>,
     result: &'a mut [f32],
 }
-kernel!(Pdf);
 
-impl<const L: usize, const N: usize> Visitor<Lanes<L>, N> for Pdf<'_, N> {
+impl<const N: usize> Batch<N> for Pdf<'_> {
     #[inline(always)]
-    fn visit<B: Brdf<Lanes<L>, N>>(self, model: &B) {
+    fn run<const L: usize, B: Brdf<Lanes<L>, N>>(self, model: &B) {
         let mut at = 0;
         while at < self.wo.len() {
-            model
+            opaque(model)
                 .pdf(self.wi.load(at), self.wo.load(at))
                 .store(&mut self.result[at..]);
             at += L;
@@ -278,16 +239,14 @@ impl<const L: usize, const N: usize> Visitor<Lanes<L>, N> for Pdf<'_, N> {
 }
 
 struct Draw<'a, const N: usize> {
-    model: &'a Model<f32, N>,
     wo: Directions<'a>,
     u: [&'a [f32]; 3],
     result: Samples<'a, N>,
 }
-kernel!(Draw);
 
-impl<const L: usize, const N: usize> Visitor<Lanes<L>, N> for Draw<'_, N> {
+impl<const N: usize> Batch<N> for Draw<'_, N> {
     #[inline(always)]
-    fn visit<B: Brdf<Lanes<L>, N>>(self, model: &B) {
+    fn run<const L: usize, B: Brdf<Lanes<L>, N>>(self, model: &B) {
         let mut at = 0;
         while at < self.wo.len() {
             let u = [
@@ -295,7 +254,7 @@ impl<const L: usize, const N: usize> Visitor<Lanes<L>, N> for Draw<'_, N> {
                 Lanes::load_or(&self.u[1][at..], 0.0),
                 Lanes::load_or(&self.u[2][at..], 0.0),
             ];
-            let s = model.sample(self.wo.load(at), u);
+            let s = opaque(model).sample(self.wo.load(at), u);
             let wi = s.wi.to_array();
             for k in 0..3 {
                 wi[k].store(&mut self.result.wi[k][at..]);

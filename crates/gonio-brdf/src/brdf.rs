@@ -1,6 +1,6 @@
 //! [`Brdf`], what every reflection function can do.
 
-use crate::part::colour::{each_component, scale};
+use crate::part::colour::{each_component, grey, scale};
 use gonio_num::{Mask, Real, Vec3};
 
 /// A direction drawn by [`Brdf::sample`].
@@ -29,12 +29,11 @@ impl<R: Real, const N: usize> Sample<R, N> {
         }
     }
 
-    /// A direction with density `pdf`, whose f·|cosθi| is `eval_cos`. Nothing where `pdf` is not positive or `wi` is
-    /// not above the horizon.
+    /// A direction with density `pdf`, whose f·|cosθi| is `eval_cos`. Nothing where `pdf` is not positive.
     #[inline(always)]
     pub fn continuous(wi: Vec3<R>, eval_cos: [R; N], pdf: R) -> Self {
         // Below the smallest normal number a quotient loses its digits or overflows: such a draw is nothing.
-        let valid = pdf.gt(R::lit(1e-37)) & wi.z.gt(R::zero());
+        let valid = pdf.gt(R::lit(1e-37));
         let over = R::select(valid, pdf, R::one()).recip();
         let mut weight = eval_cos;
         each_component!(N, k => { weight[k] = R::select(valid, eval_cos[k] * over, R::zero()); });
@@ -63,16 +62,21 @@ impl<R: Real, const N: usize> Sample<R, N> {
 
 /// A reflection function with a way to sample it.
 ///
-/// `wi` points to the light and `wo` to the viewer; both leave the surface, unit length, local frame with normal +z. Where
-/// either has z ≤ 0 everything is 0. Nothing is ever NaN.
+/// `wi` points to the light and `wo` to the viewer; both leave the surface, unit length, local frame with normal +z. Nothing
+/// is ever NaN.
+///
+/// A function that only reflects is 0 where either has z ≤ 0. One that also transmits ([`Brdf::transmits`]) is a function of
+/// both sides of the surface: +z leads out of the body, −z into it, and either direction may lie on either side. It scatters
+/// *radiance*, which a refracting boundary scales: L/n² is what passes unchanged, with n the index of refraction of
+/// the side. So f n(ωi)² is what is the same with the directions exchanged (Veach 1997, §5.2).
 pub trait Brdf<R: Real, const N: usize> {
     /// f(wi→wo) in sr⁻¹, **without** the cosine. Discrete (mirror) parts are not seen here.
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N];
 
-    /// f·cosθi in sr⁻¹: [`Brdf::eval`] times max(wi.z, 0).
+    /// f·|cosθi| in sr⁻¹.
     #[inline(always)]
     fn eval_cos(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-        scale(self.eval(wi, wo), wi.z.max(R::zero()))
+        scale(self.eval(wi, wo), wi.z.abs())
     }
 
     /// Density in sr⁻¹ with which [`Brdf::sample`] draws `wi` for this `wo`. Its integral is at most 1: what is missing
@@ -89,7 +93,7 @@ pub trait Brdf<R: Real, const N: usize> {
     #[inline(always)]
     fn eval_cos_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
         let (f, pdf) = self.eval_and_pdf(wi, wo);
-        (scale(f, wi.z.max(R::zero())), pdf)
+        (scale(f, wi.z.abs()), pdf)
     }
 
     /// The sample that has drawn `wi`: with the weight and the density of the whole function.
@@ -106,4 +110,24 @@ pub trait Brdf<R: Real, const N: usize> {
     /// A cheap estimate of the directional albedo (mean over the colours), the probability weight with which a sum
     /// chooses this part. It steers efficiency only: no result depends on it.
     fn albedo_estimate(&self, wo: Vec3<R>) -> R;
+
+    /// Whether light may pass to the other side of the surface.
+    #[inline(always)]
+    fn transmits(&self) -> bool {
+        false
+    }
+
+    /// Index of refraction of the inner side (−z) over the outer side (+z) for each component, > 0: radiance that passes
+    /// inwards is multiplied by its square, outwards divided. 1 for what doesn't refract.
+    #[inline(always)]
+    fn relative_ior(&self) -> [R; N] {
+        grey(R::one())
+    }
+
+    /// Absorption coefficient σ ≥ 0 of the inner side for each component, in units of 1/length of the scene: over a distance d
+    /// a fraction e^(−σd) of the radiance remains (Bouguer, Lambert, Beer). 0 for what isn't transmitted.
+    #[inline(always)]
+    fn absorption(&self) -> [R; N] {
+        grey(R::zero())
+    }
 }

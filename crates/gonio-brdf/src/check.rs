@@ -33,9 +33,12 @@ pub fn check(spec: &ModelSpec, effort: Effort) -> Result<Report, BrdfError> {
         })
     };
     let name = spec.to_string();
-    let subject = Subject::new(name.clone(), &eval)
+    let mut subject = Subject::new(name.clone(), &eval)
         .with_pdf(&pdf)
         .with_sample(&sample);
+    if let Some(ior) = declares.relative_ior {
+        subject = subject.transmitting(ior);
+    }
     let expectation = Expectation {
         reciprocal: declares.reciprocal,
         energy_conserving: declares.energy_conserving,

@@ -13,6 +13,18 @@ pub enum BrdfError {
         /// The nearest known name, if one is near.
         suggestion: Option<String>,
     },
+    /// The model has no preset of this name.
+    #[error("`{model}` has no preset `{name}`")]
+    UnknownPreset {
+        /// The model, or the alias.
+        model: String,
+        /// The preset's name as found.
+        name: String,
+        /// The nearest known preset of the model, if one is near.
+        suggestion: Option<String>,
+        /// Other models that have a preset of this name.
+        elsewhere: Vec<&'static str>,
+    },
     /// The model has no parameter of this name.
     #[error("`{model}` has no parameter `{name}`")]
     UnknownParameter {
@@ -66,6 +78,9 @@ pub enum BrdfError {
         /// What was expected.
         expected: String,
     },
+    /// The user stopped it.
+    #[error("stopped")]
+    Interrupted,
     /// A file could not be read.
     #[error("{}: {source}", path.display())]
     Io {
@@ -83,6 +98,23 @@ impl BrdfError {
             Self::UnknownModel { suggestion, .. } => Some(match suggestion {
                 Some(s) => format!("did you mean `{s}`?"),
                 None => format!("known are: {}", crate::registry::names().join(", ")),
+            }),
+            Self::UnknownPreset {
+                model,
+                name,
+                suggestion,
+                elsewhere,
+            } => Some(match suggestion {
+                _ if !elsewhere.is_empty() => {
+                    let word = name.rsplit('/').next().unwrap_or(name).trim();
+                    let all: Vec<_> = elsewhere.iter().map(|m| format!("{m}@{word}")).collect();
+                    format!("there are {}", all.join(", "))
+                }
+                Some(s) => format!("did you mean `{model}@{s}`?"),
+                None if crate::preset::sets_of(model).is_empty() => {
+                    format!("`{model}` has no presets; `gonio brdf list --presets` names the models that have")
+                }
+                None => format!("`gonio brdf list --presets {model}` lists them"),
             }),
             Self::UnknownParameter {
                 model, suggestion, ..

@@ -39,6 +39,7 @@ pub mod batch;
 pub mod measured;
 pub mod model;
 pub mod part;
+pub mod preset;
 pub mod record;
 pub mod registry;
 
@@ -46,7 +47,7 @@ pub use brdf::{Brdf, Sample};
 pub use check::check;
 pub use error::BrdfError;
 pub use model::{Model, ParameterSlot};
-pub use number::{Function, Index, LaneIndex, Number};
+pub use number::{Index, LaneIndex, Number};
 pub use parameter::{Kind, ParameterInfo, Value};
 pub use registry::{Alias, Declares, ModelInfo};
 pub use showcase::showcase;

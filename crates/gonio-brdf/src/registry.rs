@@ -43,6 +43,9 @@ pub struct Declares {
     pub isotropic: bool,
     /// No directional albedo is larger than this; infinite if no bound is known.
     pub albedo_bound: f64,
+    /// `None`: it only reflects. Otherwise light may pass to the other side, whose index of refraction over the outer one this
+    /// is, as [`crate::Brdf::relative_ior`] gives it.
+    pub relative_ior: Option<[f64; 3]>,
 }
 
 impl Declares {
@@ -53,6 +56,7 @@ impl Declares {
             energy_conserving: albedo_bound <= 1.0,
             isotropic: true,
             albedo_bound,
+            relative_ior: None,
         }
     }
 }

@@ -14,6 +14,7 @@ pub fn showcase() -> Vec<ModelSpec> {
             "sum" => {
                 "sum(lambertian:reflectance=0.4, mirror:reflectance=0.2, ggx:f0=0.1,roughness=0.6)"
             }
+            "mix" => "mix(0.3, lambertian:reflectance=0.4, ggx:metal=gold,roughness=0.4)",
             "scaled" => "scaled(0.5, ggx:metal=copper,roughness=0.4)",
             name => name,
         };

@@ -17,11 +17,14 @@ pub struct ModelSpec {
 }
 
 impl ModelSpec {
-    /// The model `name` (or an alias) with its defaults.
+    /// The model `name` (or an alias) with its defaults, or with the values of a [preset](crate::preset): `MODEL@NAME`.
     ///
     /// # Errors
-    /// [`BrdfError::UnknownModel`].
+    /// [`BrdfError::UnknownModel`], [`BrdfError::UnknownPreset`].
     pub fn new(name: &str) -> Result<Self, BrdfError> {
+        if let Some((model, preset)) = name.split_once('@') {
+            return crate::preset::spec(model.trim(), preset.trim());
+        }
         let (info, alias) = registry::resolve(name)?;
         let mut spec = Self {
             name: info.name.into(),
@@ -33,9 +36,9 @@ impl ModelSpec {
         Ok(spec)
     }
 
-    /// Reads `name`, `name:key=value,key=value`, `sum(spec, spec)` or `scaled(factor, spec)`.
+    /// Reads `name`, `name:key=value,key=value`, `sum(spec, spec)`, `scaled(factor, spec)` or `mix(weight, spec, spec)`.
     ///
-    /// A colour is `r/g/b` (linear), `#rrggbb` (sRGB-encoded) or one number for all components. In `sum(…)` a piece that
+    /// `name` may be followed by `@preset`. A colour is `r/g/b` (linear), `#rrggbb` (sRGB-encoded) or one number for all components. In `sum(…)` and `mix(…)` a piece that
     /// is only `key=value` belongs to the model before it.
     ///
     /// # Errors
@@ -52,7 +55,8 @@ impl ModelSpec {
         if name.is_empty() {
             return Err(syntax(1, "a model's name"));
         }
-        let mut spec = Self::new(name)?;
+        let mut whole = Self::new(name)?;
+        let spec = whole.named_mut(name)?;
         let rest = &text[end..];
         if let Some(inner) = rest.strip_prefix('(') {
             let Some(inner) = inner.strip_suffix(')') else {
@@ -67,7 +71,40 @@ impl ModelSpec {
                 }
             }
         }
-        Ok(spec)
+        Ok(whole)
+    }
+
+    /// The part that is of the model called `model` (or having it as an alias), the description itself or one of those that it is
+    /// made of. A [preset](crate::preset) may stand for a sum, in which the model that was named is a part.
+    pub fn part(&self, model: &str) -> Option<&Self> {
+        let name = registry::find(model).ok()?.name;
+        if self.name == name {
+            return Some(self);
+        }
+        let mut parts = self.values.values().filter_map(|value| match value {
+            Value::Models(models) => Some(models.iter()),
+            _ => None,
+        });
+        parts.find_map(|mut models| models.find_map(|m| m.part(name)))
+    }
+
+    /// As [`ModelSpec::part`], for what was made by [`ModelSpec::new`] with this name.
+    fn named_mut(&mut self, name: &str) -> Result<&mut Self, BrdfError> {
+        let model = name.split('@').next().unwrap_or(name).trim();
+        let name = registry::find(model)?.name;
+        Ok(self
+            .part_mut(name)
+            .expect("invariant: what a name stands for has a part of its model"))
+    }
+
+    fn part_mut(&mut self, name: &str) -> Option<&mut Self> {
+        if self.name == name {
+            return Some(self);
+        }
+        self.values.values_mut().find_map(|value| match value {
+            Value::Models(models) => models.iter_mut().find_map(|m| m.part_mut(name)),
+            _ => None,
+        })
     }
 
     /// The model `name` with parameters given as text.
@@ -78,11 +115,12 @@ impl ModelSpec {
         name: &str,
         pairs: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Result<Self, BrdfError> {
-        let mut spec = Self::new(name)?;
+        let mut whole = Self::new(name)?;
+        let spec = whole.named_mut(name)?;
         for (key, value) in pairs {
             spec.set_text(key, value)?;
         }
-        Ok(spec)
+        Ok(whole)
     }
 
     /// Several models, separated by commas.
@@ -145,6 +183,15 @@ impl ModelSpec {
     /// N ≠ 3.
     pub fn build<R: Number, const N: usize>(&self) -> Result<Model<R, N>, BrdfError> {
         Model::from_spec(self)
+    }
+
+    /// Whether it, or a model in it, is read from a file.
+    pub fn reads_files(&self) -> bool {
+        self.values.values().any(|value| match value {
+            Value::Path(_) => true,
+            Value::Models(models) => models.iter().any(Self::reads_files),
+            _ => false,
+        })
     }
 
     fn parse_composite(&mut self, inner: &str) -> Result<(), BrdfError> {

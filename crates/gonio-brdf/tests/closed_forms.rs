@@ -61,6 +61,9 @@ fn blinn_phong_uses_the_half_vector() {
     // p = 2: 8π (1/2 + 2)/(4·6) = 5π/6 is the albedo at normal incidence.
     let m = model("blinn-phong:diffuse=0,specular=1,exponent=2");
     assert!(near(m.eval(UP, UP)[0], 6.0 / (5.0 * PI)));
+    // p = 6: 8/2π times ks.
+    let m = model("blinn-phong:diffuse=0,specular=0.5,exponent=6,normalisation=normals");
+    assert!(near(m.eval(UP, UP)[0], 2.0 / PI));
 }
 
 #[test]
@@ -87,7 +90,7 @@ fn torrance_sparrow_at_normal_incidence_is_f0_over_4_pi_alpha_squared() {
     for distribution in ["ggx", "beckmann", "blinn-phong"] {
         for masking in ["smith", "smith-correlated", "v-cavity"] {
             let m = model(&format!(
-                "torrance-sparrow:distribution={distribution},masking={masking},alpha=0.5,f0=0.3,interreflection=off"
+                "torrance-sparrow:distribution={distribution},masking={masking},alpha=0.5,f0=0.3,interreflection=none"
             ));
             assert!(
                 near(m.eval(UP, UP)[0], 0.3 / (4.0 * PI * 0.25)),
@@ -111,7 +114,7 @@ fn rotation_turns_the_brushed_direction() {
 #[test]
 fn gltf_ends_are_its_metal_and_its_dielectric() {
     let metal = model("gltf:base_color=0.9/0.6/0.2,metallic=1,roughness=0.5");
-    let same = model("ggx:f0=0.9/0.6/0.2,roughness=0.5,masking=smith,interreflection=off");
+    let same = model("ggx:f0=0.9/0.6/0.2,roughness=0.5,masking=smith,interreflection=none");
     let (wi, wo) = (tilted(30.0, 20.0), tilted(40.0, 190.0));
     for (f, g) in metal.eval(wi, wo).into_iter().zip(same.eval(wi, wo)) {
         assert!(near(f, g));
@@ -129,6 +132,16 @@ fn toon_is_flat_within_a_band() {
     assert!(near(radiance(20.0), 0.6 * FRAC_1_PI) && near(radiance(30.0), 0.6 * FRAC_1_PI));
     assert!(near(radiance(45.0), 0.4 * FRAC_1_PI));
     assert_eq!(radiance(85.0), 0.0);
+}
+
+#[test]
+fn toons_rim_is_seen_at_the_silhouette() {
+    let m = model("toon:reflectance=0.25,bands=1,specular=0,rim=0.5,rim_deg=30");
+    // Seen at 59° from the normal: no rim; at 61°, within 30° of the surface: ρ + rim.
+    for (theta, rho) in [(59.0, 0.25), (61.0, 0.75)] {
+        let radiance = m.eval_cos(UP, tilted(theta, 0.0))[0];
+        assert!(near(radiance, rho * FRAC_1_PI), "{theta}: {radiance}");
+    }
 }
 
 #[test]

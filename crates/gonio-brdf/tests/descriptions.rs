@@ -85,7 +85,7 @@ fn errors_name_the_parameter_the_value_and_the_range() {
         ),
         (
             "ggx:fresnel=none,f0=0.5",
-            vec!["f0", "only fresnel=schlick uses it"],
+            vec!["f0", "only fresnel=schlick or f82-tint uses it"],
         ),
         ("ggx:eta=1.5", vec!["k", "both eta and k"]),
         ("ggx:metal=gold,k=2", vec!["metal", "not both"]),

@@ -31,13 +31,40 @@ fn microfacets_of_every_kind() {
             ("smith", "alpha_x=0.15,alpha_y=0.6,rotation_deg=30"),
             (
                 "smith-correlated",
-                "roughness=0.9,ior=1.5,interreflection=off",
+                "roughness=0.9,ior=1.5,interreflection=none",
             ),
         ] {
             passes(&format!(
                 "torrance-sparrow:distribution={distribution},masking={masking},{more}"
             ));
         }
+    }
+}
+
+/// Variants and corners: anisotropic, coloured, nearly smooth, rough, and one preset of each kind.
+#[test]
+fn the_catalogue_away_from_its_defaults() {
+    for text in [
+        "eon:1/0.5/0.1,roughness=1,albedo=polynomial",
+        "burley:0.6,roughness=0",
+        "lafortune:diffuse=0.1,specular=0.3,cx=-1.05,cy=-0.9,cz=0.8,exponent=40,specular_2=0.2/0/0.1,cx_2=1,cz_2=1,\
+         specular_3=0.1,cx_3=-1/-0.9/-0.8,exponent_3=8",
+        "lafortune:normalisation=published,cx=-1.02,cz=0.98,exponent=100",
+        "ward:diffuse=0.2,specular=0.6,alpha_x=0.1,alpha_y=0.4,rotation_deg=30",
+        "ward-duer:alpha=0.3,normalisation=bounded,diffuse=0,specular=1",
+        "ashikhmin-shirley:diffuse=1,specular=0.1/0.5/0.9,nu=20,nv=400",
+        "ashikhmin-shirley:ior=1.5,scale=0.5,diffuse_term=lambertian",
+        "ashikhmin-premoze:diffuse=0.5,specular=0.2,nu=3,nv=30",
+        "sheen-charlie:alpha=0.05,visibility=neubelt",
+        "sheen-ltc:roughness=0.1",
+        "retro-reflective:metal=silver,alpha_x=0.15,alpha_y=0.4,rotation_deg=30",
+        "toon:rim=0.5,rim_deg=40,bands=4",
+        "mix(0.2/0.5/0.9, mirror:0.9, sum(eon:0.3, ward:diffuse=0,specular=0.2))",
+        "blinn-phong@pearl-paint",
+        "ward@ngan/black-oxidized-steel",
+        "cook-torrance@low-e2/green-fabric",
+    ] {
+        passes(text);
     }
 }
 
@@ -68,6 +95,17 @@ fn what_is_declared_costs_and_is_seen() {
         ("toon", Property::Reciprocity),
         ("ggx:anisotropy=0.8", Property::Isotropy),
         ("gltf:roughness=0", Property::EnergyConservation),
+        ("burley:1,roughness=1", Property::EnergyConservation),
+        (
+            "ward-duer:alpha=0.3,specular=1,diffuse=0",
+            Property::EnergyConservation,
+        ),
+        ("sheen-ltc:roughness=0.3", Property::Reciprocity),
+        (
+            "sheen-charlie:visibility=charlie-softened",
+            Property::Reciprocity,
+        ),
+        ("gooch", Property::Reciprocity),
     ] {
         let report = check(&ModelSpec::parse(text).unwrap(), Effort::Quick).unwrap();
         assert!(report.passed(), "{report}");
@@ -93,4 +131,14 @@ fn declarations_follow_the_parameters() {
     assert!(!declares("ggx:alpha_x=0.1,alpha_y=0.2").isotropic);
     assert!(!declares("torrance-sparrow:distribution=blinn-phong").energy_conserving);
     assert!(declares("gltf:metallic=1").energy_conserving);
+    assert_eq!(declares("eon:0.7"), Declares::physical(0.7));
+    assert!(declares("burley:1,roughness=0.39").energy_conserving);
+    assert!(!declares("burley:1,roughness=0.41").energy_conserving);
+    assert!(declares("lafortune:diffuse=0.4,specular=0.3,specular_2=0.3").energy_conserving);
+    assert!(!declares("ward-duer:specular=0.1").energy_conserving);
+    assert!(declares("ward-duer:specular=0.1,normalisation=bounded").energy_conserving);
+    assert!(!declares("ashikhmin-shirley:nu=10,nv=20").isotropic);
+    assert!(declares("ashikhmin-shirley:diffuse=1,specular=1").energy_conserving);
+    assert!(!declares("sheen-ltc").reciprocal && declares("sheen-charlie").reciprocal);
+    assert!(declares("retro-reflective:metal=gold").energy_conserving);
 }

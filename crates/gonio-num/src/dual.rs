@@ -3,7 +3,7 @@
 // Loops over an index are what vectorises over lanes.
 #![allow(clippy::needless_range_loop)]
 
-use crate::{LoopState, Real, Table1, Table2};
+use crate::{LoopState, Real, Table1, Table2, Table3};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A value and its partial derivatives by `P` variables.
@@ -293,6 +293,29 @@ impl<R: Real, const P: usize> Real for Dual<R, P> {
             along_x * cx.inverse_width,
             along_y * cy.inverse_width,
         )
+    }
+
+    #[inline(always)]
+    fn table3(table: &'static Table3, x: Self, y: Self, z: Self) -> Self {
+        let (vx, vy, vz) = (x.value, y.value, z.value);
+        let (cx, cy, cz) = (
+            Cell::around(vx, table.width),
+            Cell::around(vy, table.height),
+            Cell::around(vz, table.depth),
+        );
+        let at = |x: R, y: R, z: R| R::table3(table, x, y, z);
+        let slope_x = (at(cx.high, vy, vz) - at(cx.low, vy, vz)) * cx.inverse_width;
+        let slope_y = (at(vx, cy.high, vz) - at(vx, cy.low, vz)) * cy.inverse_width;
+        let slope_z = (at(vx, vy, cz.high) - at(vx, vy, cz.low)) * cz.inverse_width;
+        let mut partials = x.partials;
+        for p in 0..P {
+            partials[p] =
+                slope_x * x.partials[p] + slope_y * y.partials[p] + slope_z * z.partials[p];
+        }
+        Self {
+            value: at(vx, vy, vz),
+            partials,
+        }
     }
 
     #[inline(always)]

@@ -7,8 +7,8 @@
 // Loops over an index are what vectorises: no closure and no iterator stands between the loop and its instruction set.
 #![allow(clippy::needless_range_loop)]
 
-use crate::table::{lookup1, lookup2};
-use crate::{LoopState, Mask, Real, Table1, Table2, Vec3, math};
+use crate::table::over_lanes;
+use crate::{LoopState, Mask, Real, Table1, Table2, Table3, Vec3, Work, dispatch, math};
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// `N` numbers of type `f32`, calculated with at once. N = 4, 8 and 16 match today's registers.
@@ -270,20 +270,22 @@ impl<const N: usize> Real for Lanes<N> {
 
     #[inline(always)]
     fn table1(table: &'static Table1, x: Self) -> Self {
-        let mut r = x;
-        for i in 0..N {
-            r.0[i] = lookup1(table, x.0[i]);
-        }
-        r
+        over_lanes::lookup1(table, x)
     }
 
     #[inline(always)]
     fn table2(table: &'static Table2, x: Self, y: Self) -> Self {
-        let mut r = x;
-        for i in 0..N {
-            r.0[i] = lookup2(table, x.0[i], y.0[i]);
-        }
-        r
+        over_lanes::lookup2(table, x, y)
+    }
+
+    #[inline(always)]
+    fn table3(table: &'static Table3, x: Self, y: Self, z: Self) -> Self {
+        over_lanes::lookup3(table, x, y, z)
+    }
+
+    #[inline(always)]
+    fn out_of_line<W: Work>(work: W) -> W::Output {
+        dispatch::run_with_lanes::<N, W>(work)
     }
 
     /// Goes on while any lane does; a lane that has ended keeps its state.

@@ -20,12 +20,14 @@ pub mod math;
 mod real;
 mod table;
 mod vec3;
+mod window;
 
 pub use affine::Affine3;
 pub use frame::Frame;
-pub use real::{LoopState, Mask, Real};
-pub use table::{Table1, Table2};
+pub use real::{LoopState, Mask, Real, Work};
+pub use table::{Table1, Table2, Table3};
 pub use vec3::Vec3;
+pub use window::window;
 
 /// The example of the README, compiled and run.
 #[cfg(doctest)]

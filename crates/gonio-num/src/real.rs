@@ -1,7 +1,7 @@
 //! [`Real`], the number type that formulas are generic over, and its scalar implementations.
 
-use crate::table::{lookup1, lookup1_f64, lookup2, lookup2_f64};
-use crate::{Table1, Table2, math};
+use crate::table::{lookup1, lookup1_f64, lookup2, lookup2_f64, lookup3, lookup3_f64};
+use crate::{Table1, Table2, Table3, math};
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -47,6 +47,14 @@ impl<R: Real, const K: usize> LoopState<R> for [R; K] {
         }
         r
     }
+}
+
+/// A piece of a formula that [`Real::out_of_line`] runs.
+pub trait Work {
+    /// What it gives.
+    type Output;
+    /// Does it; mark it `#[inline(always)]`.
+    fn run(self) -> Self::Output;
 }
 
 /// A real number that formulas are written over.
@@ -112,6 +120,15 @@ pub trait Real:
     fn table1(table: &'static Table1, x: Self) -> Self;
     /// Bilinear interpolation in `table` at (`x`, `y`), each clamped to [0, 1].
     fn table2(table: &'static Table2, x: Self, y: Self) -> Self;
+    /// Trilinear interpolation in `table` at (`x`, `y`, `z`), each clamped to [0, 1].
+    fn table3(table: &'static Table3, x: Self, y: Self, z: Self) -> Self;
+
+    /// Runs `work` in a function of its own, over lanes one for the instruction set of the machine. Everything else becomes part of the
+    /// kernel that calls it; this is for what is long and seldom needed, or shared by many kernels.
+    #[inline(never)]
+    fn out_of_line<W: Work>(work: W) -> W::Output {
+        work.run()
+    }
 
     /// [`Real::repeat`] over any [`LoopState`].
     fn repeat_state<S: LoopState<Self>>(
@@ -233,7 +250,7 @@ pub trait Real:
 }
 
 macro_rules! scalar_real {
-    ($t:ty, $floor:path, $exp:path, $ln:path, $sin:path, $cos:path, $acos:path, $atan2:path, $lookup1:path, $lookup2:path) => {
+    ($t:ty, $floor:path, $exp:path, $ln:path, $sin:path, $cos:path, $acos:path, $atan2:path, $lookup1:path, $lookup2:path, $lookup3:path) => {
         impl Real for $t {
             type Mask = bool;
             #[inline(always)]
@@ -309,6 +326,10 @@ macro_rules! scalar_real {
                 $lookup2(table, x, y)
             }
             #[inline(always)]
+            fn table3(table: &'static Table3, x: Self, y: Self, z: Self) -> Self {
+                $lookup3(table, x, y, z)
+            }
+            #[inline(always)]
             fn repeat_state<S: LoopState<Self>>(
                 count: u32,
                 mut state: S,
@@ -337,7 +358,8 @@ scalar_real!(
     math::acos,
     math::atan2,
     lookup1,
-    lookup2
+    lookup2,
+    lookup3
 );
 scalar_real!(
     f64,
@@ -349,7 +371,8 @@ scalar_real!(
     acos_f64,
     atan2_f64,
     lookup1_f64,
-    lookup2_f64
+    lookup2_f64,
+    lookup3_f64
 );
 
 /// As [`math::acos`]: clamped, NaN stays NaN.

@@ -2,7 +2,7 @@
 
 use gonio_num::dual::Dual;
 use gonio_num::lanes::Lanes;
-use gonio_num::{Real, Table1, Table2, Vec3};
+use gonio_num::{Real, Table1, Table2, Table3, Vec3};
 use proptest::prelude::*;
 
 static T1: Table1 = Table1 {
@@ -17,8 +17,18 @@ static T2: Table2 = Table2 {
         0.0, 1.0, 4.0, 2.0, -2.0, 0.25, 7.0, 3.0, 1.0, 1.5, 2.5, -4.0,
     ],
 };
+static T3: Table3 = Table3 {
+    name: "lobe",
+    width: 3,
+    height: 2,
+    depth: 3,
+    data: &[
+        0.5, -1.0, 2.0, 0.25, 3.0, -0.75, 1.5, 0.0, -2.0, 4.0, 0.125, 1.0, -0.5, 2.5, 0.75, -1.25,
+        0.3, 0.9,
+    ],
+};
 
-const RESULTS: usize = 36;
+const RESULTS: usize = 37;
 
 /// Every differentiable method, at arguments that keep off the kinks.
 #[inline(always)]
@@ -51,6 +61,12 @@ fn everything<R: Real>(x: R, y: R) -> [R; RESULTS] {
         R::select(x.le(y), x * y, x / y),
         R::table1(&T1, x.sq() * R::lit(0.1)),
         R::table2(&T2, x.sq() * R::lit(0.1), y.sq() * R::lit(0.1)),
+        R::table3(
+            &T3,
+            x.sq() * R::lit(0.1),
+            y.sq() * R::lit(0.1),
+            y.sq() * R::lit(0.1),
+        ),
         root[0],
         root[1],
         R::lit(0.1) * x,

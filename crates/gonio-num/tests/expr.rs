@@ -7,7 +7,7 @@ use gonio_num::dual::Dual;
 use gonio_num::expr::{
     Arguments, Expr, Field, Function, Output, Parameter, RecordError, module, record,
 };
-use gonio_num::{Frame, Mask, Real, Table1, Table2, Vec3};
+use gonio_num::{Frame, Mask, Real, Table1, Table2, Table3, Vec3};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use proptest::prelude::*;
 
@@ -20,6 +20,16 @@ static T2: Table2 = Table2 {
     width: 3,
     height: 2,
     data: &[0.0, 1.0, 4.0, -2.0, 0.25, 7.0],
+};
+static T3: Table3 = Table3 {
+    name: "lobe",
+    width: 3,
+    height: 2,
+    depth: 3,
+    data: &[
+        0.5, -1.0, 2.0, 0.25, 3.0, -0.75, 1.5, 0.0, -2.0, 4.0, 0.125, 1.0, -0.5, 2.5, 0.75, -1.25,
+        0.3, 0.9,
+    ],
 };
 
 /// Validates WGSL and translates it to MSL and SPIR-V.
@@ -102,7 +112,7 @@ fn a_microfacet_model_is_valid_and_exact() {
     }
 }
 
-const RESULTS: usize = 46;
+const RESULTS: usize = 47;
 
 /// Every method of `Real`, every operator, frames and nested loops.
 fn everything<R: Real>(a: R, b: R, c: R) -> [R; RESULTS] {
@@ -152,6 +162,7 @@ fn everything<R: Real>(a: R, b: R, c: R) -> [R; RESULTS] {
         R::select(less, a - (b - c), a / (b / c)),
         R::table1(&T1, a),
         R::table2(&T2, a, b),
+        R::table3(&T3, a, b, c),
         root[0] + root[1],
         nested[0],
         nested[1],

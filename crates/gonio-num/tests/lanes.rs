@@ -2,7 +2,7 @@
 
 use gonio_num::dispatch::{InstructionSet, Kernel, dispatch, dispatch_on};
 use gonio_num::lanes::{LaneMask, Lanes};
-use gonio_num::{Frame, Mask, Real, Table1, Table2, Vec3};
+use gonio_num::{Frame, Mask, Real, Table1, Table2, Table3, Vec3, Work};
 use proptest::prelude::*;
 
 static T1: Table1 = Table1 {
@@ -15,9 +15,30 @@ static T2: Table2 = Table2 {
     height: 2,
     data: &[0.0, 1.0, 4.0, -2.0, 0.25, 7.0],
 };
+static T3: Table3 = Table3 {
+    name: "lobe",
+    width: 3,
+    height: 2,
+    depth: 3,
+    data: &[
+        0.5, -1.0, 2.0, 0.25, 3.0, -0.75, 1.5, 0.0, -2.0, 4.0, 0.125, 1.0, -0.5, 2.5, 0.75, -1.25,
+        0.3, 0.9,
+    ],
+};
 
 /// How many results [`everything`] gives.
-const RESULTS: usize = 44;
+const RESULTS: usize = 47;
+
+/// Two numbers of three.
+struct Two<R>([R; 3]);
+impl<R: Real> Work for Two<R> {
+    type Output = [R; 2];
+    #[inline(always)]
+    fn run(self) -> [R; 2] {
+        let [a, b, c] = self.0;
+        [(a * b).exp() + c, (b - c).sin()]
+    }
+}
 
 /// Every method of `Real`, every operator, vectors, frames and loops.
 #[inline(always)]
@@ -36,7 +57,10 @@ fn everything<R: Real>(a: R, b: R, c: R) -> [R; RESULTS] {
     let mirrored = v.reflect(frame.n);
     let cross = v.cross(local);
     let smallest = v.min(cross).max(local);
+    let apart = R::out_of_line(Two([a, b, c]));
     [
+        apart[0],
+        apart[1],
         a + b,
         a - b,
         a * b,
@@ -62,6 +86,7 @@ fn everything<R: Real>(a: R, b: R, c: R) -> [R; RESULTS] {
         R::select(less, a, c),
         R::table1(&T1, a),
         R::table2(&T2, a, b),
+        R::table3(&T3, a, b, c),
         steps[0],
         steps[1],
         R::lit(0.1) + R::zero() + R::one() + R::pi(),

@@ -2,6 +2,9 @@
 //!
 //! Readings are means of independent samples of an [`Integrator`], so the standard error is the sample standard deviation
 //! over √n, and a 95 % confidence interval is about two of them on each side.
+//!
+//! A sensor may be inside a body of glass or water: readings are then of the radiance there, n² times that outside where nothing is lost, and
+//! what the body absorbs on the way is taken off.
 
 use crate::integrator::Vertex;
 use crate::{Integrator, RayCounts, RenderError};
@@ -9,7 +12,7 @@ use gonio_brdf::{Model, ModelSpec};
 use gonio_num::{Frame, Vec3};
 use gonio_radiometry::sequence::{SampleStream, SamplerKind};
 use gonio_radiometry::warp;
-use gonio_scene::{Ray, Scene, SurfacePoint};
+use gonio_scene::{Interior, Ray, Scene, SurfacePoint};
 use gonio_verify::statistics::Moments;
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -86,7 +89,8 @@ pub fn irradiance(
     Ok(estimate.reading("irradiance", "W m⁻²", PI))
 }
 
-/// Radiant exitance M = ∫ L(ω) cosθ dω leaving the surface at point `p` into the side of unit normal `n` \[W m⁻²].
+/// Radiant exitance M = ∫ L(ω) cosθ dω leaving the surface at point `p` into the side of unit normal `n` \[W m⁻²]: what it
+/// emits, reflects, and lets through.
 ///
 /// The surface is the one that rays toward `p` meet, started on the side of `n` at `distance` from it; choose it smaller
 /// than the gap to whatever else is near.
@@ -116,10 +120,7 @@ pub fn radiant_exitance(
             direction: -away,
             t_max: 2.0 * distance,
         };
-        options
-            .integrator
-            .radiance(scene, &ray, stream, &mut RayCounts::default())
-            .radiance
+        arriving(scene, &ray, &scene.interior_at(ray.origin), options, stream)
     })?;
     Ok(estimate.reading("radiant exitance", "W m⁻²", PI))
 }
@@ -139,11 +140,9 @@ pub fn radiance(
         direction: unit("direction", direction)?,
         t_max: f32::INFINITY,
     };
+    let interior = scene.interior_at(origin);
     let estimate = mean(options, |stream| {
-        options
-            .integrator
-            .radiance(scene, &ray, stream, &mut RayCounts::default())
-            .radiance
+        arriving(scene, &ray, &interior, options, stream)
     })?;
     Ok(estimate.reading("radiance", "W m⁻² sr⁻¹", 1.0))
 }
@@ -169,6 +168,21 @@ pub fn flux(
     Ok(estimate.reading("radiant flux", "W", PI * area))
 }
 
+/// The radiance that arrives along a ray.
+fn arriving(
+    scene: &Scene,
+    ray: &Ray,
+    interior: &Interior,
+    options: &SensorOptions,
+    stream: &mut SampleStream,
+) -> [f32; 3] {
+    let mut counts = RayCounts::default();
+    options
+        .integrator
+        .radiance(scene, ray, interior, stream, &mut counts)
+        .radiance
+}
+
 /// The receiver's radiance: irradiance / π.
 fn received(
     scene: &Scene,
@@ -179,10 +193,14 @@ fn received(
     stream: &mut SampleStream,
 ) -> [f32; 3] {
     let frame = Frame::from_normal(n);
+    let point = on_detector(scene, p, &frame);
+    let interior = scene.interior_at(point.offset_origin(n));
     let vertex = Vertex {
-        point: on_detector(scene, p, &frame),
+        bounds_a_body: false,
+        point,
         frame,
         model: Cow::Borrowed(receiver),
+        transmits: false,
         wo: Vec3::new(0.0, 0.0, 1.0),
         wo_world: n,
         albedo: [1.0; 3],
@@ -191,7 +209,7 @@ fn received(
     };
     options
         .integrator
-        .reflected(scene, vertex, stream, &mut RayCounts::default())
+        .reflected(scene, vertex, &interior, stream, &mut RayCounts::default())
 }
 
 /// A point of a detector. Detectors often lie on a surface of the scene, up to rounding: rays start far enough from it not

@@ -2,10 +2,10 @@
 
 use crate::geometry::{Geometry, Instance, Shape};
 use crate::light::{Light, Lights};
-use crate::scene::NO_LIGHT;
 use crate::{Camera, Material, Scene, SceneError};
 use gonio_env::Environment;
 use gonio_num::{Affine3, Vec3};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Collects the parts of a scene.
@@ -58,6 +58,9 @@ impl SceneBuilder {
 
     /// Adds a material; returns its index.
     pub fn material(&mut self, material: Material) -> u32 {
+        for warning in material.warnings() {
+            self.warn(warning);
+        }
         self.materials.push(material);
         self.materials.len() as u32 - 1
     }
@@ -156,6 +159,8 @@ impl SceneBuilder {
             .instances
             .iter()
             .any(|i| !self.materials[i.material as usize].opacity.is_opaque());
+        let absorbing = self.materials.iter().any(Material::absorbs);
+        self.warn_of_bodies_turned_inside_out();
         let geometry = Arc::new(Geometry::build(self.shapes, self.instances)?);
         match geometry.degenerate_count() {
             0 => {}
@@ -172,10 +177,7 @@ impl SceneBuilder {
             self.lights,
             self.environment,
         );
-        if lights.is_empty() {
-            self.warnings.push(NO_LIGHT.into());
-        }
-        Ok(Scene {
+        let mut scene = Scene {
             name: self.name,
             geometry,
             materials: self.materials,
@@ -184,7 +186,33 @@ impl SceneBuilder {
             film_size: self.film_size,
             warnings: self.warnings,
             transparent,
-        })
+            absorbing,
+        };
+        scene.review_lights();
+        Ok(scene)
+    }
+
+    /// A body of glass whose mesh is wound the other way round bends light the wrong way and absorbs outside of itself.
+    fn warn_of_bodies_turned_inside_out(&mut self) {
+        let mut seen = HashSet::new();
+        for index in 0..self.instances.len() {
+            let instance = &self.instances[index];
+            if !seen.insert((instance.shape, instance.material)) {
+                continue;
+            }
+            let material = &self.materials[instance.material as usize];
+            if material.is_boundary()
+                && let Some(Shape::Mesh(mesh)) = self.shapes.get(instance.shape as usize)
+                && mesh.check().is_ok()
+                && mesh.is_inside_out()
+            {
+                self.warn(format!(
+                    "a mesh of the transmitting material `{}` is turned inside out: its triangles face what they enclose, which is right \
+                     for the wall of a cavity alone",
+                    material.name
+                ));
+            }
+        }
     }
 }
 

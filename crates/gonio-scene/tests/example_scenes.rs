@@ -37,7 +37,7 @@ fn every_example_loads() {
         );
         found.push(name);
     }
-    for name in ["cornell.toml", "furnace.toml", "spheres.toml"] {
+    for name in ["cornell.toml", "furnace.toml", "glass.toml", "spheres.toml"] {
         assert!(found.iter().any(|f| f == name), "{name} is missing");
     }
 }
@@ -59,6 +59,26 @@ fn the_boxes_of_the_cornell_box_are_closed() {
             let cos = out.dot(face.to_world.z) / (out.length() * face.to_world.z.length());
             assert!(cos > 0.9999, "a face looks {cos} outwards");
         }
+    }
+}
+
+/// The bodies of `glass.toml` are closed, with their insides inside: also the block, of six rectangles, and the bubble in the amber.
+#[test]
+fn the_bodies_of_the_glass_scene_are_closed() {
+    let scene = example("glass.toml");
+    let inside = |p: [f32; 3]| {
+        let interior = scene.interior_at(p.into());
+        let names = interior.bodies().iter();
+        names
+            .map(|b| scene.materials[b.material as usize].name.clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(inside([-2.3, 1.0, 0.0]), ["clear"]);
+    assert_eq!(inside([0.2, 0.7, -0.3]), ["bottle"]);
+    assert_eq!(inside([2.35, 1.0, 0.0]), ["amber"]);
+    assert_eq!(inside([2.05, 1.3, 0.45]), ["amber", "air"]);
+    for outside in [[-0.9, 0.9, 0.7], [0.2, 1.6, -0.3], [2.35, 0.0005, 3.0]] {
+        assert!(inside(outside).is_empty(), "{outside:?}");
     }
 }
 

@@ -8,7 +8,7 @@ use crate::subject::{EvalFn, Expectation, Subject};
 /// Checks every property of `subject` against what it declares.
 ///
 /// The random numbers are derived from `seed_name` and the property alone: the same arguments give the same report.
-/// The bounds are those of double precision and of a function that only reflects; [`Checker`] has the other choices.
+/// The bounds are those of double precision; [`Checker`] has the other choices.
 pub fn check(
     subject: &Subject,
     expect: &Expectation,

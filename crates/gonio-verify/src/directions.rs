@@ -42,9 +42,66 @@ pub(crate) fn uniform(rng: &mut Rng) -> Vec3<f64> {
     at_height(z, TAU * rng.next_f64())
 }
 
-/// A random pair (wi, wo) above the horizon: half of them uniform, and the rest near the mirror direction (at
-/// distances from 1 to 10⁻⁴ radians, where lobes of every width are steep), at grazing angles, and near coincidence.
-pub(crate) fn random_pair(rng: &mut Rng) -> (Vec3<f64>, Vec3<f64>) {
+/// Where the directions of a subject lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Region {
+    /// Above the horizon.
+    Above,
+    /// On both sides of a boundary, the lower one with this index of refraction relative to the upper one.
+    Sphere { relative_ior: f64 },
+}
+
+/// `w` on the other side of the surface.
+pub(crate) fn flipped(w: Vec3<f64>) -> Vec3<f64> {
+    Vec3::new(w.x, w.y, -w.z)
+}
+
+/// The direction on the other side that a smooth boundary with the index `relative_ior` below it refracts into `w`; −w, straight
+/// through, beyond the critical angle.
+pub(crate) fn refracted(w: Vec3<f64>, relative_ior: f64) -> Vec3<f64> {
+    let ratio = if w.z > 0.0 {
+        1.0 / relative_ior
+    } else {
+        relative_ior
+    };
+    let sin2 = (w.x * w.x + w.y * w.y) * ratio * ratio;
+    if sin2 >= 1.0 {
+        return -w;
+    }
+    Vec3::new(
+        -ratio * w.x,
+        -ratio * w.y,
+        if w.z > 0.0 { -1.0 } else { 1.0 } * (1.0 - sin2).sqrt(),
+    )
+}
+
+/// A random pair (wi, wo) of the region. On the same side half of them are uniform, and the rest near the mirror direction (at
+/// distances from 1 to 10⁻⁴ radians, where lobes of every width are steep), at grazing angles, and near coincidence; half of
+/// those on different sides are near the refracted direction.
+pub(crate) fn random_pair(rng: &mut Rng, region: Region) -> (Vec3<f64>, Vec3<f64>) {
+    let (wi, wo) = pair_above(rng);
+    let Region::Sphere { relative_ior } = region else {
+        return (wi, wo);
+    };
+    match (rng.next_f64() * 4.0) as u32 {
+        0 => (wi, wo),
+        1 => (flipped(wi), flipped(wo)),
+        side => {
+            let wo = if side == 2 { wo } else { flipped(wo) };
+            let near = (rng.next_f64() < 0.5).then(|| {
+                let small: f64 = Real::exp(-9.2 * rng.next_f64());
+                moved(refracted(wo, relative_ior), small, TAU * rng.next_f64())
+            });
+            match near {
+                Some(wi) if wi.z * wo.z < 0.0 => (wi, wo),
+                _ if wo.z > 0.0 => (flipped(wi), wo),
+                _ => (wi, wo),
+            }
+        }
+    }
+}
+
+fn pair_above(rng: &mut Rng) -> (Vec3<f64>, Vec3<f64>) {
     let mut wo = uniform(rng);
     let kind = (rng.next_f64() * 8.0) as u32;
     let small: f64 = Real::exp(-9.2 * rng.next_f64());
@@ -121,7 +178,7 @@ mod tests {
     fn directions_are_unit_and_above_the_horizon() {
         let mut rng = Rng::from_name("directions_are_unit_and_above_the_horizon");
         for _ in 0..10_000 {
-            let (wi, wo) = random_pair(&mut rng);
+            let (wi, wo) = random_pair(&mut rng, Region::Above);
             for w in [wi, wo] {
                 // A handful of roundings of 1.1e-16 each.
                 assert!((w.length() - 1.0).abs() < 1e-14 && w.z > 0.0, "{w:?}");
@@ -133,6 +190,32 @@ mod tests {
                 assert!((wi.length() - 1.0).abs() < 1e-14, "{wi:?}");
             }
         }
+    }
+
+    #[test]
+    fn pairs_on_the_sphere_cover_every_combination_of_sides() {
+        let mut rng = Rng::from_name("pairs_on_the_sphere_cover_every_combination_of_sides");
+        let mut counts = [0; 4];
+        for _ in 0..4000 {
+            let (wi, wo) = random_pair(&mut rng, Region::Sphere { relative_ior: 1.5 });
+            for w in [wi, wo] {
+                assert!((w.length() - 1.0).abs() < 1e-14 && w.z != 0.0, "{w:?}");
+            }
+            counts[usize::from(wi.z < 0.0) + 2 * usize::from(wo.z < 0.0)] += 1;
+        }
+        // A quarter each, give or take five standard errors of 27.
+        assert!(counts.iter().all(|n| (865..1135).contains(n)), "{counts:?}");
+    }
+
+    #[test]
+    fn refraction_is_snells_law_and_its_own_inverse() {
+        let w = spherical(0.7, 0.4);
+        let t = refracted(w, 1.5);
+        let sin = |w: Vec3<f64>| (w.x * w.x + w.y * w.y).sqrt();
+        assert!((sin(w) - 1.5 * sin(t)).abs() < 1e-15 && t.z < 0.0);
+        assert!((refracted(t, 1.5) - w).length() < 1e-15);
+        let steep = flipped(spherical(0.8, 0.0));
+        assert_eq!(refracted(steep, 1.5), -steep);
     }
 
     #[test]

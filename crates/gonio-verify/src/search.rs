@@ -1,6 +1,6 @@
 //! The search for the worst pair of directions.
 
-use crate::directions::{at_height, azimuth, mirror, moved, random_pair};
+use crate::directions::{Region, at_height, azimuth, mirror, moved, random_pair};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::Rng;
 
@@ -30,11 +30,12 @@ fn robust(
     nudge: f64,
 ) -> f64 {
     let mut least = figure(wi, wo);
+    let here = (wi.z, wo.z);
     for k in 0..3 {
         let around = 0.5 + 2.1 * f64::from(k);
         let (a, b) = (moved(wi, nudge, around), moved(wo, nudge, around + 1.0));
         for (wi, wo) in [(a, wo), (a, b)] {
-            if wi.z > 0.0 && wo.z > 0.0 {
+            if wi.z * here.0 > 0.0 && wo.z * here.1 > 0.0 {
                 // A figure that isn't a number is no evidence either: it is the business of another property.
                 least = least.min(figure(wi, wo));
             }
@@ -43,10 +44,11 @@ fn robust(
     if least.is_nan() { 0.0 } else { least }
 }
 
-/// The largest robust `figure` over random pairs above the horizon, refined by a pattern search in the four coordinates
+/// The largest robust `figure` over random pairs of the region, refined by a pattern search in the four coordinates
 /// (z, φ) of both directions.
 pub(crate) fn worst_pair(
     rng: &mut Rng,
+    region: Region,
     pairs: u64,
     nudge: f64,
     figure: impl Fn(Vec3<f64>, Vec3<f64>) -> f64,
@@ -55,7 +57,7 @@ pub(crate) fn worst_pair(
     let mut evaluations = 0;
     let mut starts: Vec<(f64, Vec3<f64>, Vec3<f64>)> = vec![(0.0, up, up); STARTS];
     for _ in 0..pairs {
-        let (wi, wo) = random_pair(rng);
+        let (wi, wo) = random_pair(rng, region);
         evaluations += 1;
         if figure(wi, wo) > starts[STARTS - 1].0 {
             let f = robust(&figure, wi, wo, nudge);
@@ -104,7 +106,8 @@ fn refine(
             for sign in [-1.0, 1.0] {
                 let mut trial = x;
                 trial[axis] += sign * step;
-                if axis % 2 == 0 && !(trial[axis] > 0.0 && trial[axis] <= 1.0) {
+                // A height stays on its side of the surface.
+                if axis % 2 == 0 && !(trial[axis] * x[axis] > 0.0 && trial[axis].abs() <= 1.0) {
                     continue;
                 }
                 let (wi, wo) = pair(trial);
@@ -122,13 +125,13 @@ fn refine(
     ((best, kept.0, kept.1), evaluations)
 }
 
-/// A typical size of f: its mean over uniform pairs and near-mirror pairs above the horizon, over the channels. Only
-/// finite values count.
-pub(crate) fn typical(eval: &crate::subject::EvalFn, rng: &mut Rng) -> f64 {
+/// A typical size of f: its mean over random pairs of the region and mirror pairs, over the channels. Only finite values
+/// count.
+pub(crate) fn typical(eval: &crate::subject::EvalFn, region: Region, rng: &mut Rng) -> f64 {
     const PAIRS: u32 = 512;
     let (mut sum, mut n) = (0.0, 0u32);
     for k in 0..PAIRS {
-        let (mut wi, wo) = random_pair(rng);
+        let (mut wi, wo) = random_pair(rng, region);
         if k % 16 == 0 {
             wi = mirror(wo);
         }
@@ -157,7 +160,7 @@ mod tests {
             e
         };
         let mut rng = Rng::from_name("the_refined_witness_is_the_summit");
-        let worst = worst_pair(&mut rng, 2000, 1e-7, bump);
+        let worst = worst_pair(&mut rng, Region::Above, 2000, 1e-7, bump);
         assert!(worst.figure > 0.999, "{worst:?}");
         assert!((worst.wi.z - 0.3).abs() < 2e-3);
     }

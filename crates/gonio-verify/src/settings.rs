@@ -29,8 +29,6 @@ pub enum Precision {
 pub struct Settings {
     /// The number format inside the subject.
     pub precision: Precision,
-    /// Whether the subject only reflects: then everything below the horizon must be exactly 0.
-    pub reflection_only: bool,
     /// Pairs of directions for the deterministic properties (reciprocity, isotropy, linearity, signs).
     pub pairs: u64,
     /// Outgoing directions for energy, densities and weights.
@@ -54,7 +52,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The usual settings for `effort`, in double precision, for a function that only reflects.
+    /// The usual settings for `effort`, in double precision.
     pub fn new(effort: Effort) -> Self {
         let (pairs, directions, density_samples, cells, quadrature_evaluations) = match effort {
             Effort::Quick => (4_000, 4, 40_000, 256, 40_000),
@@ -63,7 +61,6 @@ impl Settings {
         };
         Self {
             precision: Precision::Double,
-            reflection_only: true,
             pairs,
             directions,
             density_samples,

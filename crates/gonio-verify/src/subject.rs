@@ -1,5 +1,6 @@
 //! What is checked: a reflection function as closures, and what it declares of itself.
 
+use crate::directions::Region;
 use gonio_num::Vec3;
 
 /// f(wi, wo) in sr⁻¹, without the cosine, in three channels.
@@ -38,6 +39,9 @@ pub struct Subject<'a> {
     pub pdf: Option<&'a PdfFn<'a>>,
     /// Importance sampling, see [`SampleFn`].
     pub sample: Option<&'a SampleFn<'a>>,
+    /// `None`: it only reflects, and everything below the horizon must be exactly 0. Otherwise light may pass to the other
+    /// side, z < 0, from either side, and this is the index of refraction there over the one above, each channel.
+    pub relative_ior: Option<[f64; 3]>,
 }
 
 impl<'a> Subject<'a> {
@@ -48,6 +52,7 @@ impl<'a> Subject<'a> {
             eval,
             pdf: None,
             sample: None,
+            relative_ior: None,
         }
     }
 
@@ -63,6 +68,46 @@ impl<'a> Subject<'a> {
         self
     }
 
+    /// Says that the subject also transmits, into a medium of this index of refraction (each channel) relative to the
+    /// one above the surface; [1; 3] for what only lets through or scatters, as a leaf does.
+    ///
+    /// `eval` then scatters *radiance*, which a refracting boundary scales by the square of the index: reciprocity is
+    /// f(ωi→ωr) n(ωi)² = f(ωr→ωi) n(ωr)², and energy is conserved if ∫ f(ωi→ωr) n(ωi)²/n(ωr)² |cosθi| dωi ≤ 1 over the
+    /// sphere, with n the index of the side that a direction is on (Veach 1997, eqs 5.14 and 5.29).
+    pub fn transmitting(mut self, relative_ior: [f64; 3]) -> Self {
+        self.relative_ior = Some(relative_ior);
+        self
+    }
+
+    /// Whether nothing passes to the other side.
+    pub(crate) fn only_reflects(&self) -> bool {
+        self.relative_ior.is_none()
+    }
+
+    /// n² of the side that `w` is on, each channel.
+    pub(crate) fn index_squared(&self, w: Vec3<f64>) -> [f64; 3] {
+        match self.relative_ior {
+            Some(n) if w.z < 0.0 => n.map(|n| n * n),
+            _ => [1.0; 3],
+        }
+    }
+
+    /// `colour`·n(ωi)²/n(ωr)²: what becomes of the factor on radiance when radiance is counted in units of n².
+    pub(crate) fn basic(&self, colour: [f64; 3], wi: Vec3<f64>, wo: Vec3<f64>) -> [f64; 3] {
+        let (i, o) = (self.index_squared(wi), self.index_squared(wo));
+        [0, 1, 2].map(|k| colour[k] * i[k] / o[k])
+    }
+
+    /// Where directions are looked for.
+    pub(crate) fn region(&self) -> Region {
+        match self.relative_ior {
+            None => Region::Above,
+            Some([r, g, b]) => Region::Sphere {
+                relative_ior: (r + g + b) / 3.0,
+            },
+        }
+    }
+
     /// What `sample` gives at `u`, with samples of density 0 taken as nothing.
     pub(crate) fn draw(&self, wo: Vec3<f64>, u: [f64; 3]) -> Option<SubjectSample> {
         let sample = self.sample?;
@@ -76,6 +121,7 @@ impl std::fmt::Debug for Subject<'_> {
             .field("name", &self.name)
             .field("pdf", &self.pdf.is_some())
             .field("sample", &self.sample.is_some())
+            .field("relative_ior", &self.relative_ior)
             .finish_non_exhaustive()
     }
 }
@@ -84,7 +130,7 @@ impl std::fmt::Debug for Subject<'_> {
 /// measured and printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct Expectation {
-    /// f(ωi→ωr) = f(ωr→ωi).
+    /// f(ωi→ωr) = f(ωr→ωi); for what transmits see [`Subject::transmitting`].
     pub reciprocal: bool,
     /// Radiant exitance ≤ irradiance.
     pub energy_conserving: bool,

@@ -174,21 +174,40 @@ fn a_leaf_may_transmit() {
     let subject = gonio_verify::Subject::new("leaf", &eval)
         .with_pdf(&pdf)
         .with_sample(&sample);
-    let run = |reflection_only| {
-        Checker::new(&subject, &Expectation::PHYSICAL, Effort::Quick)
-            .settings(Settings {
-                reflection_only,
-                ..Settings::new(Effort::Quick)
-            })
-            .run("leaf")
-    };
-    let report = run(false);
+    let run = |s: &gonio_verify::Subject| check(s, &Expectation::PHYSICAL, Effort::Quick, "leaf");
+    let report = run(&subject.clone().transmitting([1.0; 3]));
     assert!(report.passed(), "{report}");
     assert_eq!(outcome(&report, Property::Horizon), Outcome::NotApplicable);
     let energy = report.verdict(Property::EnergyConservation).unwrap();
     assert!((energy.figure - 1.0).abs() < 1e-4, "{report}");
     // The control: a surface that claims only to reflect.
-    assert_eq!(outcome(&run(true), Property::Horizon), Outcome::Fail);
+    assert_eq!(outcome(&run(&subject), Property::Horizon), Outcome::Fail);
+}
+
+#[test]
+fn a_boundary_scales_radiance() {
+    for ior in [[1.5; 3], [0.7, 0.75, 0.8]] {
+        let boundary = Frosted { ior, scaled: true };
+        let report = with_subject("frosted", &boundary, |s| {
+            let s = s.clone().transmitting(ior);
+            check(&s, &Expectation::PHYSICAL, Effort::Quick, "frosted")
+        });
+        assert!(report.passed(), "{report}");
+        let energy = report.verdict(Property::EnergyConservation).unwrap();
+        assert!((energy.figure - 1.0).abs() < 1e-4, "{report}");
+    }
+    // The control: without the factor n(ωr)² it is not reciprocal, and towards the rarer side it makes energy.
+    let forgetful = Frosted {
+        ior: [0.7; 3],
+        scaled: false,
+    };
+    let report = with_subject("unscaled", &forgetful, |s| {
+        let s = s.clone().transmitting([0.7; 3]);
+        check(&s, &Expectation::PHYSICAL, Effort::Quick, "frosted")
+    });
+    for p in [Property::Reciprocity, Property::EnergyConservation] {
+        assert_eq!(outcome(&report, p), Outcome::Fail, "{report}");
+    }
 }
 
 #[test]

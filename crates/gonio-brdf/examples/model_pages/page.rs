@@ -1,6 +1,6 @@
 //! The book's pages about models, made of the registry and of the comments above the formulas.
 
-use gonio_brdf::{Declares, Kind, ModelInfo, ModelSpec, ParameterInfo, registry, showcase};
+use gonio_brdf::{Declares, Kind, ModelInfo, ModelSpec, ParameterInfo, preset, registry, showcase};
 use std::path::{Path, PathBuf};
 
 /// Said at the top of each page.
@@ -80,7 +80,36 @@ fn page(info: &ModelInfo) -> Result<String, String> {
             text += &format!("| `{}` | {preset} |\n", alias.name);
         }
     }
-    Ok(text + &declared(info) + &commands(info))
+    Ok(text + &presets(info) + &declared(info) + &commands(info))
+}
+
+/// The sets of presets of the model and of its aliases; those that an alias shares with the model once.
+fn presets(info: &ModelInfo) -> String {
+    let mut sets = preset::sets_of(info.name);
+    for alias in info.aliases {
+        for set in preset::sets_of(alias.name) {
+            if sets.iter().all(|known| known.presets != set.presets) {
+                sets.push(set);
+            }
+        }
+    }
+    if sets.is_empty() {
+        return String::new();
+    }
+    let mut text =
+        "\n## Presets\n\nBy [name](../presets.md):\n\n| set | presets | such as |\n|---|---|---|\n"
+            .to_owned();
+    for set in sets {
+        text += &format!(
+            "| {} (`{}`) | {} | `{}@{}` |\n",
+            cell(set.summary),
+            set.name,
+            set.presets.len(),
+            set.model,
+            set.presets.first().copied().unwrap_or_default()
+        );
+    }
+    text
 }
 
 /// The documentation comment of the structure in a model's source: its equation.

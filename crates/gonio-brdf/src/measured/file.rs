@@ -65,12 +65,6 @@ fn first_bytes(file: &File, path: &Path, count: usize) -> Result<Vec<u8>, BrdfEr
     Ok(start)
 }
 
-/// Whether a regular file begins with `magic`.
-pub(super) fn begins_with(path: &Path, magic: &[u8]) -> Result<bool, BrdfError> {
-    let file = open(path, "a measured table")?;
-    Ok(first_bytes(&file, path, magic.len())? == magic)
-}
-
 /// Maps a regular file that begins with `magic` into memory; `what` is what it should be. A file that begins otherwise is refused
 /// before it is mapped.
 pub(super) fn map(path: &Path, magic: &[u8], what: &str) -> Result<Arc<Mmap>, BrdfError> {

@@ -2,7 +2,7 @@
 
 use crate::part::diffuse_and_lobe::{self, DiffuseAndLobe};
 use crate::part::geometry::{Half, above, mirrored_about};
-use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, Sample};
+use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
 use gonio_radiometry::warp::{
     cosine_hemisphere, cosine_hemisphere_density, cosine_power_hemisphere,
@@ -14,13 +14,18 @@ use std::f64::consts::{LN_2, PI, TAU};
 pub const INFO: ModelInfo = ModelInfo {
     name: "blinn-phong",
     summary: "diffuse, and a power of the cosine between the normal and the half vector",
-    paper: "Blinn 1977, \"Models of Light Reflection for Computer Synthesized Pictures\"; Giesen 2009 for the normalisation",
+    paper: "Blinn 1977, \"Models of Light Reflection for Computer Synthesized Pictures\"; Giesen 2009 for the normalisation; Ngan, Durand \
+            & Matusik 2005 for that of fits",
     parameters: &[
         diffuse_and_lobe::DIFFUSE,
         diffuse_and_lobe::SPECULAR,
         diffuse_and_lobe::exponent(80.0),
-        diffuse_and_lobe::normalisation(
-            "published: the lobe is ks·cosᵖ; energy: scaled so that ks is its albedo at normal incidence",
+        ParameterInfo::choice(
+            "normalisation",
+            &["energy", "published", "normals"],
+            Some("energy"),
+            "published: the lobe is ks·cosᵖ; energy: scaled so that ks is its albedo at normal incidence; normals: times (p + 2)/2π, the \
+             density of normals, as in fits: its albedo then is about 4 ks",
         ),
     ],
     positional: None,
@@ -30,23 +35,53 @@ pub const INFO: ModelInfo = ModelInfo {
 };
 
 fn declares(spec: &ModelSpec) -> Declares {
-    let published = spec.word("normalisation") == "published";
-    let gain = if published {
-        plain_albedo(spec.real::<f64>("exponent"))
-    } else {
-        1.0
+    let p: f64 = spec.real("exponent");
+    let gain = match Normalisation::from_spec(spec) {
+        Normalisation::Energy => 1.0,
+        Normalisation::Published => plain_albedo(p),
+        Normalisation::Normals => plain_albedo(p) * normals(p),
     };
     Declares::physical(spec.largest_sum(&[("diffuse", 1.0), ("specular", gain)]))
 }
 
 /// f = kd/π + ks·c·cosᵖθh.
 ///
-/// energy: c = (p + 2)(p + 4)/(8π (2^(−p/2) + p)), the inverse of the lobe's albedo at normal incidence, which is its largest;
-/// published: c = 1.
+/// - energy: c = (p + 2)(p + 4)/(8π (2^(−p/2) + p)), the inverse of the lobe's albedo at normal incidence, which is its largest
+/// - published: c = 1
+/// - normals: c = (p + 2)/2π, with which ∫ c cosᵖθ cosθ dω = 1, as of a density of microfacets (Ngan et al. 2005)
 #[derive(Debug, Clone, Copy)]
 pub struct BlinnPhong<R: Real, const N: usize> {
-    /// kd, ks, p, and whether the lobe is normalised.
+    /// kd, ks and p.
     pub constants: DiffuseAndLobe<R, N>,
+    /// c.
+    pub normalisation: Normalisation,
+}
+
+/// The constant c before the power.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Normalisation {
+    /// One over the lobe's albedo at normal incidence.
+    Energy,
+    /// 1.
+    Published,
+    /// (p + 2)/2π.
+    Normals,
+}
+
+impl Normalisation {
+    fn from_spec(spec: &ModelSpec) -> Self {
+        match spec.word("normalisation").as_str() {
+            "published" => Self::Published,
+            "normals" => Self::Normals,
+            _ => Self::Energy,
+        }
+    }
+}
+
+/// (p + 2)/2π.
+#[inline(always)]
+fn normals<R: Real>(p: R) -> R {
+    (p + R::lit(2.0)) * R::lit(1.0 / TAU)
 }
 
 /// Albedo of cosᵖθh at normal incidence: 8π (2^(−p/2) + p)/((p + 2)(p + 4)).
@@ -59,13 +94,17 @@ fn plain_albedo<R: Real>(p: R) -> R {
 
 impl<R: Real, const N: usize> BlinnPhong<R, N> {
     pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
-        let constants = DiffuseAndLobe::from_spec(spec)?;
-        Ok(Self { constants })
+        Ok(Self {
+            constants: DiffuseAndLobe::from_spec(spec)?,
+            normalisation: Normalisation::from_spec(spec),
+        })
     }
 
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> BlinnPhong<S, N> {
-        let constants = self.constants.cast(f);
-        BlinnPhong { constants }
+        BlinnPhong {
+            constants: self.constants.cast(f),
+            normalisation: self.normalisation,
+        }
     }
 
     pub(crate) fn set(&mut self, parameter: &str, value: [R; 3]) {
@@ -77,20 +116,21 @@ impl<R: Real, const N: usize> BlinnPhong<R, N> {
     fn relative_c(&self) -> R {
         let p = self.constants.exponent;
         let over = R::lit(TAU) / (p + R::one());
-        if self.constants.normalised {
-            over / plain_albedo(p)
-        } else {
-            over
+        match self.normalisation {
+            Normalisation::Energy => over / plain_albedo(p),
+            Normalisation::Published => over,
+            Normalisation::Normals => over * normals(p),
         }
     }
 
     /// Albedo of the lobe at normal incidence over ks.
     #[inline(always)]
     fn lobe_gain(&self) -> R {
-        if self.constants.normalised {
-            R::one()
-        } else {
-            plain_albedo(self.constants.exponent)
+        let p = self.constants.exponent;
+        match self.normalisation {
+            Normalisation::Energy => R::one(),
+            Normalisation::Published => plain_albedo(p),
+            Normalisation::Normals => plain_albedo(p) * normals(p),
         }
     }
 

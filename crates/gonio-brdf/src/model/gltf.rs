@@ -1,7 +1,7 @@
 //! The metallic-roughness material of glTF 2.0.
 
 use crate::part::colour::{add, cast, each_component, largest, mean, only_where, scale};
-use crate::part::distribution::{ALPHA_MIN, Distribution, Shape};
+use crate::part::distribution::{Distribution, Shape};
 use crate::part::geometry::{Half, above};
 use crate::part::masking::{Masking, smith_g1_over_cos, visibility};
 use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
@@ -100,11 +100,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         let mut model = Self {
             base_color: spec.colour("base_color")?,
             metallic: spec.real("metallic"),
-            distribution: Distribution {
-                shape: Shape::Ggx,
-                alpha_x: R::one(),
-                alpha_y: R::one(),
-            },
+            distribution: Distribution::isotropic(Shape::Ggx, R::one()),
             ior: spec.real("ior"),
             specular: spec.real("specular"),
             specular_color: spec.colour("specular_color")?,
@@ -136,9 +132,8 @@ impl<R: Real, const N: usize> Gltf<R, N> {
     }
 
     fn set_roughness(&mut self, roughness: R) {
-        let alpha = (roughness * roughness).clamp(R::lit(ALPHA_MIN), R::one());
-        self.distribution.alpha_x = alpha;
-        self.distribution.alpha_y = alpha;
+        let alpha = roughness * roughness;
+        self.distribution.set_alpha(alpha, alpha);
     }
 
     /// F of the dielectric.

@@ -109,4 +109,16 @@ impl<R: Number, const N: usize> Brdf<R, N> for Scaled<R, N> {
     fn albedo_estimate(&self, wo: Vec3<R>) -> R {
         self.of.albedo_estimate(wo) * mean(self.factor)
     }
+
+    fn transmits(&self) -> bool {
+        self.of.transmits()
+    }
+
+    fn relative_ior(&self) -> [R; N] {
+        self.of.relative_ior()
+    }
+
+    fn absorption(&self) -> [R; N] {
+        self.of.absorption()
+    }
 }

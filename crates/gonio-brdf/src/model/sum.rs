@@ -1,7 +1,6 @@
 //! A sum of models (T9b).
 
 use crate::part::colour::{add, grey, only_where, scale};
-use crate::part::geometry::above;
 use crate::{
     Brdf, BrdfError, Declares, Kind, Model, ModelInfo, ModelSpec, Number, ParameterInfo, Sample,
 };
@@ -30,15 +29,41 @@ fn declares(spec: &ModelSpec) -> Declares {
         all.reciprocal &= d.reciprocal;
         all.isotropic &= d.isotropic;
         all.albedo_bound += d.albedo_bound;
+        all.relative_ior = all.relative_ior.or(d.relative_ior);
     }
     all.energy_conserving = all.albedo_bound <= 1.0;
     all
+}
+
+/// Refuses parts that transmit into media of different indices of refraction.
+pub(super) fn same_interior(spec: &ModelSpec, parts: &[ModelSpec]) -> Result<(), BrdfError> {
+    let mut first: Option<[f64; 3]> = None;
+    for part in parts {
+        let Some(ior) = part.declares()?.relative_ior else {
+            continue;
+        };
+        match first {
+            Some(other) if other != ior => {
+                return Err(BrdfError::Unsupported {
+                    what: format!(
+                        "the parts of `{spec}` transmit into media of different indices of refraction, {other:?} and {ior:?}: \
+                         a surface has one inner side"
+                    ),
+                });
+            }
+            _ => first = Some(ior),
+        }
+    }
+    Ok(())
 }
 
 /// f = Σ fₖ.
 ///
 /// `sample` chooses a part with a probability proportional to its estimated albedo (at least 1/50 of the sum for each part).
 /// A continuous direction gets the weight and density of the whole sum; a discrete one the part's weight over its probability.
+///
+/// Parts that transmit must agree on the index of refraction, since there is one inner side; its absorption is that of the first
+/// of them.
 #[derive(Debug, Clone)]
 pub struct Sum<R: Real, const N: usize> {
     /// The parts, at least one.
@@ -51,8 +76,14 @@ impl<R: Number, const N: usize> Sum<R, N> {
         if parts.is_empty() {
             return Err(spec.wrong("parts", "at least one model: sum(model, model)"));
         }
+        same_interior(spec, parts)?;
         let parts: Result<_, _> = parts.iter().map(ModelSpec::build).collect();
         Ok(Self { parts: parts? })
+    }
+
+    /// The first part that transmits.
+    fn interior(&self) -> Option<&Model<R, N>> {
+        self.parts.iter().find(|part| part.transmits())
     }
 
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Sum<S, N> {
@@ -99,7 +130,7 @@ impl<R: Number, const N: usize> Brdf<R, N> for Sum<R, N> {
         for (k, part) in self.parts.iter().enumerate() {
             sum = sum + self.choice(k, wo, floor) * part.pdf(wi, wo);
         }
-        R::select(above(wi, wo), sum / total, R::zero())
+        sum / total
     }
 
     #[inline]
@@ -111,7 +142,7 @@ impl<R: Number, const N: usize> Brdf<R, N> for Sum<R, N> {
             f = add(f, part_f);
             sum = sum + self.choice(k, wo, floor) * pdf;
         }
-        (f, R::select(above(wi, wo), sum / total, R::zero()))
+        (f, sum / total)
     }
 
     #[inline]
@@ -149,5 +180,17 @@ impl<R: Number, const N: usize> Brdf<R, N> for Sum<R, N> {
             sum = sum + part.albedo_estimate(wo);
         }
         sum
+    }
+
+    fn transmits(&self) -> bool {
+        self.interior().is_some()
+    }
+
+    fn relative_ior(&self) -> [R; N] {
+        self.interior().map_or([R::one(); N], Brdf::relative_ior)
+    }
+
+    fn absorption(&self) -> [R; N] {
+        self.interior().map_or([R::zero(); N], Brdf::absorption)
     }
 }

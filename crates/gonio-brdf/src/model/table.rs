@@ -1,28 +1,53 @@
 //! A measured table (T19).
 
-use crate::measured::Measured;
-use crate::measured::adaptive::{self, Adaptive};
+use crate::measured::{self, LoadOptions, Measured, Missing, Repair, Select, Side};
 use crate::part::colour::{cast, mean, mul};
 use crate::{Brdf, BrdfError, Declares, Kind, ModelInfo, ModelSpec, Number, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
 use std::path::Path;
+use std::sync::Arc;
 
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
     name: "table",
-    summary: "a measured table: a file of the MERL or the RGL database",
-    paper: "Matusik et al. 2003, \"A Data-Driven Reflectance Model\"; Rusinkiewicz 1998 for the angles; Dupuy & Jakob 2018, \"An Adaptive Parameterization for Efficient Material Acquisition and Rendering\"",
+    summary: "a measured table: a file in one of the formats of measured reflection",
+    paper: "Matusik et al. 2003, \"A Data-Driven Reflectance Model\"; Rusinkiewicz 1998 for half and difference angles; \
+            Klems 1994 for patches; Ward et al. 2012 for tensor trees",
     parameters: &[
         ParameterInfo {
             name: "file",
             kind: Kind::Path,
-            meaning: "the file, in the MERL or the RGL format",
+            meaning: "the file; its format is told by its content",
         },
         ParameterInfo::colour(
             "scale",
             (0.0, 1000.0),
             Some([1.0; 3]),
             "what to multiply by",
+        ),
+        ParameterInfo::choice(
+            "component",
+            &[
+                "reflection-front",
+                "reflection-back",
+                "transmission-front",
+                "transmission-back",
+                "all",
+            ],
+            None,
+            "the side that is evaluated, of a file that has several; without it the reflection on the front, or the only one there is",
+        ),
+        ParameterInfo::choice(
+            "negative",
+            &["zero", "fill", "refuse"],
+            Some("zero"),
+            "what is done with negative values: counted as 0, filled from the cells around, or the file is refused",
+        ),
+        ParameterInfo::choice(
+            "missing",
+            &["fill", "zero", "refuse"],
+            Some("fill"),
+            "what is done with values that the file marks as missing",
         ),
     ],
     positional: Some("file"),
@@ -34,60 +59,96 @@ pub const INFO: ModelInfo = ModelInfo {
     declares,
 };
 
-/// A measurement promises nothing on energy. Half and difference angles make a table reciprocal and isotropic; that of the RGL database
-/// is as reciprocal as the instrument was, and isotropic if one azimuth was measured.
+/// What its layout makes it; a measurement promises nothing on energy. A file that can't be read declares what most do: the model
+/// can't be built then.
 fn declares(spec: &ModelSpec) -> Declares {
     let mut declares = Declares::physical(f64::INFINITY);
-    if let Some(crate::Value::Path(file)) = spec.value("file") {
-        // A file that can't be read declares nothing: building the model says what is wrong with it.
-        if let Some(isotropic) = adaptive::isotropic_file(Path::new(&file)) {
-            declares.reciprocal = false;
-            declares.isotropic = isotropic;
-        }
+    if let Ok((path, options)) = source(spec)
+        && let Ok(data) = measured::load(Path::new(&path), options)
+    {
+        declares.reciprocal = data.is_reciprocal();
+        declares.isotropic = data.is_isotropic();
+        declares.relative_ior = data.transmits().then_some([1.0; 3]);
     }
     declares
 }
 
-/// f from a measurement times a colour.
+/// The file, and how it is to be read.
+fn source(spec: &ModelSpec) -> Result<(String, LoadOptions), BrdfError> {
+    let Some(crate::Value::Path(file)) = spec.value("file") else {
+        return Err(spec.wrong("file", "a file's path"));
+    };
+    let repair = |key: &str| Repair::from_word(&spec.word(key)).unwrap_or_default();
+    let options = LoadOptions {
+        negative: repair("negative"),
+        missing: Missing(repair("missing")),
+        select: match spec.word("component").as_str() {
+            "" => Select::Front,
+            "all" => Select::All,
+            side => Side::from_name(side).map_or(Select::Front, Select::One),
+        },
+    };
+    Ok((file, options))
+}
+
+/// f(ωi, ωo) from a measured table, times a colour.
 ///
-/// Evaluated lane by lane, cells in double precision whatever R is; but [`batch`](crate::batch) evaluates an [`Adaptive`] over lanes.
+/// A grid of angles is interpolated linearly along every axis, constant beyond the outermost nodes and periodic in azimuth; patches and
+/// tensor trees are constant within a cell. Colours are linear RGB: spectra are projected with the CIE 1931 observer under
+/// D65, so that a flat reflectance is grey.
+///
+/// Sampling is exact for the interpolant: grids are drawn from by cells, of half vectors or of incoming directions, for the viewer's
+/// directions around the one at hand; patches and trees in proportion to f·cosθi.
 #[derive(Debug, Clone)]
 pub struct Table<R: Real, const N: usize> {
-    /// The measurement, RGB; for N > 3 its last component repeats.
-    pub data: Measured,
+    /// The table.
+    pub data: Arc<Measured>,
+    /// The file that it was read from; empty for a table in memory.
+    pub file: Arc<str>,
     /// What it is multiplied by.
     pub scale: [R; N],
 }
 
 impl<R: Number, const N: usize> Table<R, N> {
-    /// A measurement in memory.
-    pub fn new(data: impl Into<Measured>) -> Self {
+    /// A table in memory. For N ≠ 3 its first colour component repeats, which is right for a grey one.
+    pub fn new(data: Arc<Measured>) -> Self {
         Self {
-            data: data.into(),
+            data,
+            file: "".into(),
             scale: [R::one(); N],
         }
     }
 
     pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
-        if N != 3 {
+        let (file, options) = source(spec)?;
+        let data = measured::load(Path::new(&file), options)?;
+        if N != 3 && !data.is_grey() {
             return Err(BrdfError::Unsupported {
-                what: format!("a table holds RGB values, and {N} components were asked for"),
+                what: format!("{file} holds colours, and {N} components were asked for"),
             });
         }
-        let Some(crate::Value::Path(file)) = spec.value("file") else {
-            return Err(spec.wrong("file", "a file's path"));
-        };
         Ok(Self {
-            data: Measured::read(Path::new(&file))?,
+            data: Arc::new(data),
+            file: file.into(),
             scale: spec.colour("scale")?,
         })
     }
 
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Table<S, N> {
         Table {
-            data: self.data.clone(),
+            data: Arc::clone(&self.data),
+            file: Arc::clone(&self.file),
             scale: cast(self.scale, f),
         }
+    }
+
+    /// Lines about negative and missing values of the file.
+    pub(crate) fn warnings(&self) -> Vec<String> {
+        let lines = self.data.warnings();
+        lines
+            .into_iter()
+            .map(|l| format!("{}: {l}", self.file))
+            .collect()
     }
 
     pub(crate) fn set(&mut self, _parameter: &str, value: [R; 3]) {
@@ -95,78 +156,29 @@ impl<R: Number, const N: usize> Table<R, N> {
     }
 }
 
-/// Two vectors out of six numbers.
-fn pair([a, b, c, d, e, f]: [f64; 6]) -> (Vec3<f64>, Vec3<f64>) {
-    (Vec3::new(a, b, c), Vec3::new(d, e, f))
-}
-
-/// Six numbers of two vectors.
-fn six<R: Real>(a: Vec3<R>, b: Vec3<R>) -> [R; 6] {
-    [a.x, a.y, a.z, b.x, b.y, b.z]
-}
-
 impl<R: Number, const N: usize> Brdf<R, N> for Table<R, N> {
+    #[inline(always)]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-        let rgb = match &self.data {
-            Measured::Tabulated(table) => R::through(six(wi, wo), &|x| {
-                let (wi, wo) = pair(x);
-                table.eval(wi, wo)
-            }),
-            Measured::Adaptive(adaptive) => R::call(&adaptive::Eval(adaptive), six(wi, wo)),
-        };
-        mul(self.scale, super::components(rgb))
+        mul(self.scale, super::components(self.data.eval(wi, wo)))
     }
 
+    #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-        let [density] = match &self.data {
-            Measured::Tabulated(table) => R::through(six(wi, wo), &|x| {
-                let (wi, wo) = pair(x);
-                [table.pdf(wi, wo)]
-            }),
-            Measured::Adaptive(adaptive) => R::call(&adaptive::Pdf(adaptive), six(wi, wo)),
-        };
-        density
+        self.data.pdf(wi, wo)
     }
 
-    fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
-        let Measured::Adaptive(adaptive) = &self.data else {
-            return (self.eval(wi, wo), self.pdf(wi, wo));
-        };
-        let [r, g, b, density] = R::call(&adaptive::EvalAndPdf(adaptive), six(wi, wo));
-        (mul(self.scale, super::components([r, g, b])), density)
-    }
-
+    #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-        let u = Vec3::new(u[0], u[1], u[2]);
-        // Where nothing is drawn: a direction below the horizon, of density 0.
-        let [x, y, z] = match &self.data {
-            Measured::Tabulated(table) => R::through(six(wo, u), &|x| {
-                let (wo, u) = pair(x);
-                let down = Vec3::new(0.0, 0.0, -1.0);
-                table.sample(wo, u.to_array()).unwrap_or(down).to_array()
-            }),
-            Measured::Adaptive(adaptive) => R::call(&adaptive::Draw(adaptive), six(wo, u)),
-        };
-        self.sample_of(Vec3::new(x, y, z), wo)
+        self.sample_of(self.data.sample(wo, u), wo)
     }
 
+    #[inline(always)]
     fn albedo_estimate(&self, wo: Vec3<R>) -> R {
-        let albedo = match &self.data {
-            Measured::Tabulated(table) => R::lit((table.mean() * std::f64::consts::PI).min(1.0)),
-            Measured::Adaptive(adaptive) => Brdf::<R, 3>::albedo_estimate(&**adaptive, wo),
-        };
-        albedo * mean(self.scale)
+        self.data.albedo(wo).min(R::one()) * mean(self.scale)
     }
-}
 
-impl<const N: usize> Table<f32, N> {
-    /// The measurement, if it has batches of its own for the colours that are asked for.
-    pub(crate) fn batched(&self) -> Option<(&Adaptive, [f32; 3])> {
-        match &self.data {
-            Measured::Adaptive(adaptive) if N == 3 => {
-                Some((adaptive, std::array::from_fn(|k| self.scale[k])))
-            }
-            _ => None,
-        }
+    #[inline(always)]
+    fn transmits(&self) -> bool {
+        self.data.transmits()
     }
 }

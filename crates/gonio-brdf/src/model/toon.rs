@@ -10,14 +10,14 @@ use std::f64::consts::{FRAC_1_PI, PI};
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
     name: "toon",
-    summary: "a cartoon shader: flat bands of light and a hard highlight; not physical",
+    summary: "a cartoon shader: flat bands of light, a hard highlight and a bright rim; not physical",
     paper: "Lake et al. 2000, \"Stylized Rendering Techniques for Scalable Real-Time 3D Animation\"",
     parameters: &[
         ParameterInfo::colour(
             "reflectance",
             (0.0, 1.0),
             Some([0.5; 3]),
-            "reflectance ρ; also the albedo of every viewing direction",
+            "reflectance ρ; also the albedo of every viewing direction but the rim's",
         ),
         ParameterInfo::number(
             "bands",
@@ -39,6 +39,19 @@ pub const INFO: ModelInfo = ModelInfo {
             Some(8.0),
             "angle between normal and half vector at the highlight's edge; 0: none",
         ),
+        ParameterInfo::colour(
+            "rim",
+            (0.0, 1.0),
+            Some([0.0; 3]),
+            "what the reflectance gains in the rim, the band along the silhouette",
+        ),
+        ParameterInfo::number(
+            "rim_deg",
+            "°",
+            (0.0, 90.0),
+            Some(25.0),
+            "width of the rim: the viewer's angle to the surface at its inner edge; 0: none",
+        ),
     ],
     positional: Some("reflectance"),
     aliases: &[],
@@ -49,11 +62,11 @@ pub const INFO: ModelInfo = ModelInfo {
     },
 };
 
-/// f = ρ/π · q(cosθi)/cosθi + ks/π · [θh ≤ edge], q(x) = ⌊x·bands + ½⌋/bands.
+/// f = ρ′/π · q(cosθi)/cosθi + ks/π · [θh ≤ edge], q(x) = ⌊x·bands + ½⌋/bands, ρ′ = ρ + rim · [90° − θr < rim's width].
 ///
-/// Under one light the reflected radiance f·cosθi is flat within each band. As ∫₀¹ q = ½, the diffuse part reflects exactly
-/// ρ of a uniform field towards every viewer. By design it is not reciprocal, and light from the bright edge of the lowest
-/// band returns up to 2ρ of its energy.
+/// Under one light the reflected radiance f·cosθi is flat within each band. As ∫₀¹ q = ½, the banded part reflects exactly
+/// ρ′ of a uniform field towards every viewer. By design it is not reciprocal, and light from the bright edge of the lowest
+/// band returns up to 2ρ′ of its energy.
 #[derive(Debug, Clone, Copy)]
 pub struct Toon<R: Real, const N: usize> {
     /// ρ, [0, 1].
@@ -64,6 +77,10 @@ pub struct Toon<R: Real, const N: usize> {
     pub specular: [R; N],
     /// Cosine of the half vector's angle at the highlight's edge.
     pub cos_edge: R,
+    /// Gain of the reflectance in the rim, [0, 1].
+    pub rim: [R; N],
+    /// Cosine of the viewer's direction at the rim's inner edge.
+    pub rim_cos: R,
 }
 
 impl<R: Real, const N: usize> Toon<R, N> {
@@ -73,6 +90,8 @@ impl<R: Real, const N: usize> Toon<R, N> {
             bands: R::lit(spec.real::<f64>("bands").round()),
             specular: spec.colour("specular")?,
             cos_edge: (spec.real::<R>("highlight_deg") * R::lit(PI / 180.0)).cos(),
+            rim: spec.colour("rim")?,
+            rim_cos: (spec.real::<R>("rim_deg") * R::lit(PI / 180.0)).sin(),
         })
     }
 
@@ -82,6 +101,8 @@ impl<R: Real, const N: usize> Toon<R, N> {
             bands: f(self.bands),
             specular: cast(self.specular, f),
             cos_edge: f(self.cos_edge),
+            rim: cast(self.rim, f),
+            rim_cos: f(self.rim_cos),
         }
     }
 
@@ -90,15 +111,24 @@ impl<R: Real, const N: usize> Toon<R, N> {
             "reflectance" => self.reflectance = super::components(value),
             "specular" => self.specular = super::components(value),
             "bands" => self.bands = (value[0] + R::lit(0.5)).floor(),
+            "rim" => self.rim = super::components(value),
+            "rim_deg" => self.rim_cos = (value[0] * R::lit(PI / 180.0)).sin(),
             _ => self.cos_edge = (value[0] * R::lit(PI / 180.0)).cos(),
         }
     }
 
+    /// ρ′ towards a viewer.
+    #[inline(always)]
+    fn banded(&self, wo: Vec3<R>) -> [R; N] {
+        let inside = R::from_mask(wo.z.lt(self.rim_cos));
+        add(self.reflectance, scale(self.rim, inside))
+    }
+
     /// Probability of drawing within the highlight: its solid angle of half vectors is small, so is its albedo.
     #[inline(always)]
-    fn highlight_probability(&self) -> R {
+    fn highlight_probability(&self, wo: Vec3<R>) -> R {
         let s = mean(self.specular) * (R::one() - self.cos_edge) * R::lit(8.0);
-        s / (mean(self.reflectance) + s + R::lit(1e-20))
+        s / (mean(self.banded(wo)) + s + R::lit(1e-20))
     }
 }
 
@@ -111,7 +141,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for Toon<R, N> {
         let diffuse = step / (self.bands * wi.z).max(R::lit(0.01));
         let lit = R::from_mask(half.h.z.ge(self.cos_edge) & self.cos_edge.lt(R::one()));
         let f = add(
-            scale(self.reflectance, diffuse * R::lit(FRAC_1_PI)),
+            scale(self.banded(wo), diffuse * R::lit(FRAC_1_PI)),
             scale(self.specular, lit * R::lit(FRAC_1_PI)),
         );
         only_where(above(wi, wo), f)
@@ -124,7 +154,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for Toon<R, N> {
         // Half vectors uniform in the cone of 2π(1 − cos edge) sr, times dh/dωi = 1/(4 cosθ′).
         let cone = (R::one() - self.cos_edge).max(R::lit(1e-12)) * R::lit(8.0 * PI);
         let spot = (cone * half.cos.max(R::lit(1e-15))).recip();
-        let p = self.highlight_probability();
+        let p = self.highlight_probability(wo);
         let density = p.lerp(
             cosine_hemisphere_density(wi),
             R::select(inside, spot, R::zero()),
@@ -136,12 +166,12 @@ impl<R: Real, const N: usize> Brdf<R, N> for Toon<R, N> {
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
         let diffuse = cosine_hemisphere([u[0], u[1]]);
         let spot = mirrored_about(wo, uniform_cone([u[0], u[1]], self.cos_edge));
-        let wi = Vec3::select(u[2].lt(self.highlight_probability()), spot, diffuse);
+        let wi = Vec3::select(u[2].lt(self.highlight_probability(wo)), spot, diffuse);
         self.sample_of(wi, wo)
     }
 
     #[inline(always)]
-    fn albedo_estimate(&self, _wo: Vec3<R>) -> R {
-        mean(self.reflectance) + mean(self.specular) * (R::one() - self.cos_edge) * R::lit(8.0)
+    fn albedo_estimate(&self, wo: Vec3<R>) -> R {
+        mean(self.banded(wo)) + mean(self.specular) * (R::one() - self.cos_edge) * R::lit(8.0)
     }
 }

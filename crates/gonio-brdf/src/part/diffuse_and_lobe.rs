@@ -13,7 +13,7 @@ pub struct DiffuseAndLobe<R: Real, const N: usize> {
     pub diffuse: [R; N],
     /// ks, [0, 1].
     pub specular: [R; N],
-    /// p, [0, 10⁵].
+    /// p, [0, 2·10⁵].
     pub exponent: R,
     /// Whether c normalises the lobe; otherwise c = 1.
     pub normalised: bool,
@@ -38,7 +38,7 @@ pub(crate) const fn exponent(default: f64) -> ParameterInfo {
     ParameterInfo::number(
         "exponent",
         "",
-        (0.0, 1e5),
+        (0.0, 2e5),
         Some(default),
         "exponent p: the larger, the narrower the lobe",
     )

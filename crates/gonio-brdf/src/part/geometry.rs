@@ -56,10 +56,42 @@ pub fn mirrored_about<R: Real>(wo: Vec3<R>, h: Vec3<R>) -> Vec3<R> {
     Vec3::select(wo.dot(h).gt(R::zero()), wo.reflect(h), down)
 }
 
+/// `wo` refracted at a facet with normal `h` on its side, from a medium of index n_o into one of index n_i on the other side;
+/// Snell's law. A vector of length 1 also beyond the critical angle, where it has no meaning: it then lies in the facet's plane.
+///
+/// - `cos`: wo·h, in [0, 1]
+/// - `ratio`: n_o/n_i
+#[inline(always)]
+pub fn refracted_about<R: Real>(wo: Vec3<R>, h: Vec3<R>, cos: R, ratio: R) -> Vec3<R> {
+    let sin2 = (R::one() - cos * cos).max(R::zero()) * ratio * ratio;
+    let cos_t = (R::one() - sin2).safe_sqrt();
+    let t = h * (ratio * cos - cos_t) - wo * ratio;
+    Vec3::select(sin2.lt(R::one()), t, t.normalize())
+}
+
+/// `v` on the other side of the surface where the mask is true.
+#[inline(always)]
+pub fn flipped_where<R: Real>(mask: R::Mask, v: Vec3<R>) -> Vec3<R> {
+    Vec3::new(v.x, v.y, R::select(mask, -v.z, v.z))
+}
+
 /// `v` turned about the normal by the angle with the given cosine and sine.
 #[inline(always)]
 pub fn turned<R: Real>(v: Vec3<R>, cos: R, sin: R) -> Vec3<R> {
     Vec3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z)
+}
+
+/// Cosine and sine of the azimuth of `v`; (1, 0) on the normal.
+#[inline(always)]
+pub fn azimuth<R: Real>(v: Vec3<R>) -> [R; 2] {
+    let tiny = R::lit(1e-30);
+    let length2 = v.x * v.x + v.y * v.y;
+    let over = length2.max(tiny).sqrt().recip();
+    let lost = length2.lt(tiny);
+    [
+        R::select(lost, R::one(), v.x * over),
+        R::select(lost, R::zero(), v.y * over),
+    ]
 }
 
 /// √(x² + y²), the sine of θ of a unit vector.

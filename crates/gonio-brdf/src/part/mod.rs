@@ -2,11 +2,22 @@
 //! their directional albedo, and measured metals.
 
 pub mod albedo;
+pub mod ashikhmin_lobe;
+pub mod boundary_loss;
 pub(crate) mod colour;
+pub mod dielectric;
 pub mod diffuse_and_lobe;
 pub mod distribution;
 pub mod fresnel;
 pub mod geometry;
+pub mod interreflection;
 pub mod masking;
+pub mod masking_table;
 pub mod metal;
+pub mod random_walk;
+pub mod rough;
+pub mod sheen_lobe;
+pub mod slopes;
 pub(crate) mod special;
+mod table_data;
+pub mod ward_lobe;

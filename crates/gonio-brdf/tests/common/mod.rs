@@ -9,6 +9,7 @@ use gonio_radiometry::sequence::Rng;
 pub fn base(info: &ModelInfo) -> Option<ModelSpec> {
     let text = match info.name {
         "sum" => "sum(lambertian:reflectance=0.4, mirror:0.2, ggx:f0=0.1,roughness=0.6)".to_owned(),
+        "mix" => "mix(0.3/0.5/0.8, mirror:0.2, ggx:f0=0.3,roughness=0.6)".to_owned(),
         "scaled" => "scaled(0.2/0.5/0.8, phong:exponent=12)".to_owned(),
         // A table comes from a file: it has tests of its own.
         "table" => return None,
@@ -74,10 +75,11 @@ pub fn one_at_a_time() -> Vec<ModelSpec> {
 
 /// `count` descriptions of each model with every parameter drawn at random; contradictory ones are drawn again.
 pub fn random(name: &str, count: usize) -> Vec<ModelSpec> {
-    let mut rng = Rng::from_name(name);
     let mut all = Vec::new();
     for info in registry::models() {
         let Some(base) = base(info) else { continue };
+        // Each model has its own numbers: another model in the registry doesn't change them.
+        let mut rng = Rng::from_name(&format!("{name} {}", info.name));
         let mut made = 0;
         while made < count {
             let mut spec = base.clone();

@@ -45,6 +45,9 @@
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+use crate::Work;
+use std::sync::atomic::{AtomicU8, Ordering};
+
 /// Work over lanes that is compiled once for each instruction set.
 pub trait Kernel {
     /// What the work gives.
@@ -74,12 +77,16 @@ impl InstructionSet {
     /// The widest that this machine has. The processor is asked once a process.
     #[inline]
     pub fn detect() -> Self {
-        if Self::Avx512.is_available() {
-            Self::Avx512
-        } else if Self::Avx2.is_available() {
-            Self::Avx2
-        } else {
-            Self::Baseline
+        static FOUND: AtomicU8 = AtomicU8::new(0);
+        match FOUND.load(Ordering::Relaxed) {
+            0 => {
+                let found = Self::ALL.into_iter().rev().find(|set| set.is_available());
+                let found = found.unwrap_or(Self::Baseline);
+                // Several threads may ask at once: they find the same.
+                FOUND.store(found as u8 + 1, Ordering::Relaxed);
+                found
+            }
+            known => Self::ALL[known as usize - 1],
         }
     }
 
@@ -146,5 +153,29 @@ pub fn dispatch_on<K: Kernel>(set: InstructionSet, kernel: K) -> K::Output {
         InstructionSet::Avx2 | InstructionSet::Avx512 => {
             unreachable!("only x86-64 machines have it")
         }
+    }
+}
+
+/// Runs `work` over `N` lanes in a function of its own, compiled for the widest instruction set of this machine if that has `N`
+/// lanes, else for the baseline.
+#[inline(never)]
+pub(crate) fn run_with_lanes<const N: usize, W: Work>(work: W) -> W::Output {
+    match InstructionSet::detect() {
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx2 if N == 8 => x86::run_avx2(Same::<W, N>(work)),
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx512 if N == 16 => x86::run_avx512(Same::<W, N>(work)),
+        _ => work.run(),
+    }
+}
+
+/// Work as a kernel that is only run over `N` lanes.
+struct Same<W, const N: usize>(W);
+
+impl<W: Work, const N: usize> Kernel for Same<W, N> {
+    type Output = W::Output;
+    #[inline(always)]
+    fn run<const L: usize>(self) -> W::Output {
+        self.0.run()
     }
 }

@@ -1,4 +1,4 @@
-//! Kernels under AVX2 and AVX-512: the one unsafe module of the crate.
+//! Kernels under AVX2 and AVX-512: one of the two unsafe modules of the crate.
 //!
 //! Invariant: a function marked `#[target_feature]` is called only after the processor was found to have **all** the features
 //! that it is marked with. Each safe function below asserts this itself, right before its call, so no caller can break it.

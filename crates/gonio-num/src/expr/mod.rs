@@ -37,7 +37,7 @@ pub use function::{
     Arguments, Field, FieldValue, Function, Output, Parameter, RecordError, module, record,
 };
 
-use crate::{LoopState, Mask, Real, Table1, Table2};
+use crate::{LoopState, Mask, Real, Table1, Table2, Table3};
 use std::marker::PhantomData;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use tape::{Id, Op};
@@ -179,6 +179,13 @@ impl Real for Expr {
     fn table2(table: &'static Table2, x: Self, y: Self) -> Self {
         match tape::with(|t| t.table2(table)) {
             Some(index) => Self(apply(Op::Table2(index), [x.0, y.0])),
+            None => x,
+        }
+    }
+
+    fn table3(table: &'static Table3, x: Self, y: Self, z: Self) -> Self {
+        match tape::with(|t| t.table3(table)) {
+            Some(index) => Self(apply(Op::Table3(index), [x.0, y.0, z.0])),
             None => x,
         }
     }

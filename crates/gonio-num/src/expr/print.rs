@@ -329,6 +329,12 @@ impl Printer<'_> {
                 self.declarations.insert(table.name.into(), text);
                 call(&format!("{}_at", table.name))
             }
+            Op::Table3(t) => {
+                let table = self.graph.tables3[*t as usize];
+                let text = super::tables::table3(table);
+                self.declarations.insert(table.name.into(), text);
+                call(&format!("{}_at", table.name))
+            }
         }
     }
 

@@ -2,8 +2,8 @@
 
 use super::RecordError;
 use super::names;
-use crate::table::{lookup1, lookup2};
-use crate::{Real, Table1, Table2};
+use crate::table::{lookup1, lookup2, lookup3};
+use crate::{Real, Table1, Table2, Table3};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -43,6 +43,8 @@ pub(super) enum Op {
     Table1(u32),
     /// Index into [`Graph::tables2`], x, y.
     Table2(u32),
+    /// Index into [`Graph::tables3`], x, y, z.
+    Table3(u32),
 }
 
 /// One value. Nodes are compared by their bits, so equal nodes are equal values.
@@ -96,13 +98,16 @@ pub(super) struct Graph {
     pub body: Vec<Statement>,
     pub tables1: Vec<&'static Table1>,
     pub tables2: Vec<&'static Table2>,
+    pub tables3: Vec<&'static Table3>,
 }
 
 impl Graph {
     /// Names of all tables.
     pub fn table_names(&self) -> impl Iterator<Item = &'static str> {
         let names1 = self.tables1.iter().map(|t| t.name);
-        names1.chain(self.tables2.iter().map(|t| t.name))
+        let names2 = self.tables2.iter().map(|t| t.name);
+        let names3 = self.tables3.iter().map(|t| t.name);
+        names1.chain(names2).chain(names3)
     }
 
     /// The operation on bit patterns: what the interpreter does, and what folds constants.
@@ -139,6 +144,7 @@ impl Graph {
             Op::Atan2 => Real::atan2(x(0), x(1)),
             Op::Table1(t) => lookup1(self.tables1[t as usize], x(0)),
             Op::Table2(t) => lookup2(self.tables2[t as usize], x(0), x(1)),
+            Op::Table3(t) => lookup3(self.tables3[t as usize], x(0), x(1), x(2)),
         };
         number.to_bits()
     }
@@ -360,38 +366,40 @@ impl Tape {
 
     /// The index of a table, entered if new. A table that can't be used is noted as the recording's error.
     pub fn table1(&mut self, table: &'static Table1) -> Option<u32> {
-        let found = self
-            .graph
-            .tables1
-            .iter()
-            .position(|t| std::ptr::eq(*t, table));
-        if let Some(i) = found {
-            return Some(i as u32);
+        if let Some(i) = position(&self.graph.tables1, table) {
+            return Some(i);
         }
-        let size_is_right = table.data.len() >= 2;
-        self.check_table(table.name, table.data, size_is_right)?;
+        self.check_table(table.name, table.data, &[table.data.len()])?;
         self.graph.tables1.push(table);
         Some(self.graph.tables1.len() as u32 - 1)
     }
 
     /// As [`Tape::table1`].
     pub fn table2(&mut self, table: &'static Table2) -> Option<u32> {
-        let found = self
-            .graph
-            .tables2
-            .iter()
-            .position(|t| std::ptr::eq(*t, table));
-        if let Some(i) = found {
-            return Some(i as u32);
+        if let Some(i) = position(&self.graph.tables2, table) {
+            return Some(i);
         }
-        let (w, h) = (table.width, table.height);
-        let size_is_right = w >= 2 && h >= 2 && w.checked_mul(h) == Some(table.data.len());
-        self.check_table(table.name, table.data, size_is_right)?;
+        self.check_table(table.name, table.data, &[table.width, table.height])?;
         self.graph.tables2.push(table);
         Some(self.graph.tables2.len() as u32 - 1)
     }
 
-    fn check_table(&mut self, name: &str, data: &[f32], size_is_right: bool) -> Option<()> {
+    /// As [`Tape::table1`].
+    pub fn table3(&mut self, table: &'static Table3) -> Option<u32> {
+        if let Some(i) = position(&self.graph.tables3, table) {
+            return Some(i);
+        }
+        let sides = [table.width, table.height, table.depth];
+        self.check_table(table.name, table.data, &sides)?;
+        self.graph.tables3.push(table);
+        Some(self.graph.tables3.len() as u32 - 1)
+    }
+
+    fn check_table(&mut self, name: &str, data: &[f32], sides: &[usize]) -> Option<()> {
+        let product = sides
+            .iter()
+            .try_fold(1usize, |product, side| product.checked_mul(*side));
+        let size_is_right = sides.iter().all(|s| *s >= 2) && product == Some(data.len());
         let problem = if let Err(error) = names::check(name) {
             error
         } else if self.graph.table_names().any(|n| n == name) {
@@ -413,4 +421,10 @@ impl Tape {
         self.error.get_or_insert(problem);
         None
     }
+}
+
+/// The place of a table among those entered, which is known by its address.
+fn position<T>(tables: &[&'static T], table: &'static T) -> Option<u32> {
+    let found = tables.iter().position(|t| std::ptr::eq(*t, table));
+    found.map(|i| i as u32)
 }

@@ -1,13 +1,13 @@
 //! The reflection equation alone (T13): one reflection of the light that comes straight from the lights.
 //!
 //! Lr(ωr) = Σᵢ Lᵢ f cosθᵢ over point, spot and directional lights (12), plus ∫ Li f cosθi dωi over area lights and the
-//! environment (13).
+//! environment (13). Where a surface transmits, the light may come from its other side.
 
 use super::vertex::{Vertex, arrive, environment_radiance};
 use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::Scene;
+use gonio_scene::{Interior, Scene};
 
 /// Options of the direct integrator: none so far.
 ///
@@ -17,11 +17,12 @@ use gonio_scene::Scene;
 pub struct Direct;
 
 impl Direct {
-    /// Radiance that `vertex` reflects toward its viewer.
+    /// Radiance that `vertex` reflects toward its viewer, which is in the bodies of `interior`.
     pub(super) fn reflected(
         &self,
         scene: &Scene,
         vertex: &Vertex<'_>,
+        interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {
@@ -33,7 +34,7 @@ impl Direct {
                 let Some(sample) = light.sample(&vertex.point, part, position) else {
                     continue;
                 };
-                let direct = vertex.reflect_light(scene, &sample, counts, |density| {
+                let direct = vertex.reflect_light(scene, &sample, interior, counts, |density| {
                     if sample.delta {
                         1.0
                     } else {
@@ -56,7 +57,19 @@ impl Direct {
             }
         };
         let ray = vertex.point.spawn_ray(drawn.wi);
-        let (radiance, density) = match arrive(scene, &ray, 1, stream, counts) {
+        let mut interior = *interior;
+        vertex.cross(scene, &mut interior, drawn.wi);
+        let mut throughput = drawn.weight;
+        let next = arrive(
+            scene,
+            &ray,
+            &mut interior,
+            &mut throughput,
+            1,
+            stream,
+            counts,
+        );
+        let (radiance, density) = match next {
             None => (
                 environment_radiance(scene, drawn.wi),
                 scene.lights.environment().map_or(0.0, |e| e.pdf(drawn.wi)),
@@ -68,7 +81,7 @@ impl Direct {
         };
         sum(
             total,
-            scaled(product(drawn.weight, radiance), weight(density)),
+            scaled(product(throughput, radiance), weight(density)),
         )
     }
 }

@@ -10,7 +10,7 @@ pub use vertex::Vertex;
 
 use crate::film::{FilmSample, FirstSurface};
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{Ray, Scene};
+use gonio_scene::{Interior, Ray, Scene};
 use std::ops::AddAssign;
 
 /// How the reflection equation is solved.
@@ -38,47 +38,53 @@ impl Integrator {
     }
 
     /// Estimates the radiance that arrives along `ray` at its origin \[W m⁻² sr⁻¹], with what the ray met first.
+    ///
+    /// - `interior`: the bodies that the origin is inside of, [`Scene::interior_at`]
     pub fn radiance(
         &self,
         scene: &Scene,
         ray: &Ray,
+        interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> FilmSample {
-        match vertex::arrive(scene, ray, 0, stream, counts) {
-            None => FilmSample {
-                radiance: vertex::environment_radiance(scene, ray.direction),
-                first: None,
-            },
+        let (mut interior, mut left) = (*interior, [1.0; 3]);
+        let arrived = vertex::arrive(scene, ray, &mut interior, &mut left, 0, stream, counts);
+        let (radiance, first) = match arrived {
+            None => (vertex::environment_radiance(scene, ray.direction), None),
             Some(vertex) => {
-                let first = Some(FirstSurface {
+                let first = FirstSurface {
                     albedo: vertex.albedo,
-                    normal: vertex.frame.n.to_array(),
+                    normal: vertex.facing_normal().to_array(),
                     depth: vertex.distance,
                     material: vertex.material,
-                });
+                };
                 let emitted = scene.emitted(&vertex.point, -ray.direction);
-                let reflected = self.reflected(scene, vertex, stream, counts);
-                FilmSample {
-                    radiance: sum(emitted, reflected),
-                    first,
-                }
+                let reflected = self.reflected(scene, vertex, &interior, stream, counts);
+                (sum(emitted, reflected), Some(first))
             }
+        };
+        FilmSample {
+            radiance: product(left, radiance),
+            first,
         }
     }
 
-    /// Estimates the radiance that `vertex` reflects toward its viewer, Lr(ωr) of the reflection equation (12, 13)
+    /// Estimates the radiance that `vertex` reflects or lets through toward its viewer, Lr(ωr) of the reflection equation (12, 13)
     /// \[W m⁻² sr⁻¹].
+    ///
+    /// - `interior`: the bodies on the viewer's side
     pub fn reflected(
         &self,
         scene: &Scene,
         vertex: Vertex<'_>,
+        interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {
         match self {
-            Self::Direct(direct) => direct.reflected(scene, &vertex, stream, counts),
-            Self::Path(path) => path.reflected(scene, vertex, stream, counts),
+            Self::Direct(direct) => direct.reflected(scene, &vertex, interior, stream, counts),
+            Self::Path(path) => path.reflected(scene, vertex, interior, stream, counts),
         }
     }
 }

@@ -3,17 +3,18 @@
 use super::vertex::{Vertex, arrive};
 use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::Scene;
+use gonio_scene::{Interior, Scene};
 
 /// Options of the path tracer.
 ///
 /// At each reflection one light is sampled and one direction is drawn by the reflection function; multiple importance
-/// sampling (Veach 1997, power heuristic) joins the two estimates of direct light.
+/// sampling (Veach 1997, power heuristic) joins the two estimates of direct light. Passing through a surface counts as a reflection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Path {
     /// Reflections that light may make on its way from a light to the camera; 0 shows lights alone.
     pub max_bounces: u32,
-    /// Reflections before Russian roulette may end a path. Roulette leaves the expected image as it is.
+    /// Reflections before Russian roulette may end a path. Roulette leaves the expected image as it is. It judges a path by the
+    /// energy that it carries, not by its radiance, which is scaled inside a body of glass.
     pub roulette_after: u32,
 }
 
@@ -28,17 +29,26 @@ impl Default for Path {
 }
 
 impl Path {
-    /// Radiance that `vertex` reflects toward its viewer.
+    /// Radiance that `vertex` reflects toward its viewer, which is in the bodies of `interior`.
     pub(super) fn reflected<'a>(
         &self,
         scene: &'a Scene,
-        mut vertex: Vertex<'a>,
+        vertex: Vertex<'a>,
+        interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {
+        let mut interior = *interior;
         let mut total = [0.0; 3];
         let mut throughput = [1.0; 3];
+        // What takes the scaling of radiance by n² out of the throughput, for roulette.
+        let mut unscaling = [1.0; 3];
+        // In one place from arrival to departure: a vertex may be large.
+        let mut current = Some(vertex);
         for bounce in 0..self.max_bounces {
+            let Some(vertex) = &current else {
+                break;
+            };
             let base = dimension::of_bounce(bounce);
             let light = if vertex.model.is_delta() {
                 None
@@ -49,7 +59,7 @@ impl Path {
                 scene.lights.sample(&vertex.point, choice, position)
             };
             if let Some(light) = light {
-                let direct = vertex.reflect_light(scene, &light, counts, |density| {
+                let direct = vertex.reflect_light(scene, &light, &interior, counts, |density| {
                     if light.delta {
                         1.0
                     } else {
@@ -67,6 +77,8 @@ impl Path {
             if throughput == [0.0; 3] {
                 break;
             }
+            vertex.unscale(&mut unscaling, drawn.wi);
+            vertex.cross(scene, &mut interior, drawn.wi);
             let ray = vertex.point.spawn_ray(drawn.wi);
             let weight = |light_density: f32| {
                 if drawn.delta {
@@ -75,31 +87,34 @@ impl Path {
                     power_heuristic(drawn.pdf, light_density)
                 }
             };
-            match arrive(scene, &ray, bounce + 1, stream, counts) {
-                None => {
-                    let (radiance, density) = scene.lights.environment_radiance_and_pdf(drawn.wi);
-                    let light = scaled(product(throughput, radiance), weight(density));
-                    total = sum(total, light);
-                    break;
-                }
-                Some(next) => {
-                    let radiance = scene.emitted(&next.point, next.wo_world);
-                    if radiance != [0.0; 3] {
-                        let density = scene.lights.pdf_area(vertex.point.p, &next.point, drawn.wi);
-                        total = sum(
-                            total,
-                            scaled(product(throughput, radiance), weight(density)),
-                        );
-                    }
-                    vertex = next;
-                }
+            let from = vertex.point.p;
+            current = arrive(
+                scene,
+                &ray,
+                &mut interior,
+                &mut throughput,
+                bounce + 1,
+                stream,
+                counts,
+            );
+            let Some(next) = &current else {
+                let (radiance, density) = scene.lights.environment_radiance_and_pdf(drawn.wi);
+                let light = scaled(product(throughput, radiance), weight(density));
+                total = sum(total, light);
+                break;
+            };
+            let radiance = scene.emitted(&next.point, next.wo_world);
+            if radiance != [0.0; 3] {
+                let density = scene.lights.pdf_area(from, &next.point, drawn.wi);
+                total = sum(
+                    total,
+                    scaled(product(throughput, radiance), weight(density)),
+                );
             }
 
             if bounce >= self.roulette_after {
-                let survival = throughput[0]
-                    .max(throughput[1])
-                    .max(throughput[2])
-                    .min(0.95);
+                let [r, g, b] = product(throughput, unscaling);
+                let survival = r.max(g).max(b).min(0.95);
                 stream.seek(base + dimension::ROULETTE);
                 if stream.next_1d() >= survival {
                     break;

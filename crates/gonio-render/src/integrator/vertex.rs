@@ -4,7 +4,7 @@ use super::{RayCounts, dimension, product, scaled};
 use gonio_brdf::{Brdf, Model, Sample};
 use gonio_num::{Frame, Vec3};
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{LightSample, LightTarget, Ray, Scene, SurfacePoint};
+use gonio_scene::{Interior, LightSample, Ray, Scene, SurfacePoint};
 use std::borrow::Cow;
 
 /// A point on a surface with its reflection function, seen from one direction.
@@ -12,14 +12,18 @@ use std::borrow::Cow;
 pub struct Vertex<'a> {
     /// The point.
     pub point: SurfacePoint,
-    /// Local frame, facing the viewer: normal +z.
+    /// Local frame: normal +z on the viewer's side for a function that only reflects, on the outer side for one that transmits.
     pub frame: Frame<f32>,
     /// The reflection function.
     pub model: Cow<'a, Model<f32, 3>>,
+    /// Whether the reflection function transmits.
+    pub transmits: bool,
     /// Direction to the viewer, local.
     pub wo: Vec3<f32>,
     /// Direction to the viewer, world.
     pub wo_world: Vec3<f32>,
+    /// Whether the surface bounds a body, where bodies absorb.
+    pub bounds_a_body: bool,
     /// Approximate reflectance, for the auxiliary layer.
     pub albedo: [f32; 3],
     /// Index of the material.
@@ -28,13 +32,17 @@ pub struct Vertex<'a> {
     pub distance: f32,
 }
 
-/// Follows `ray` to the first surface that stops it; a surface of opacity α stops it with probability α. Nothing if the
-/// ray goes on to infinity.
+/// Follows `ray` to the first surface that stops it; a surface of opacity α stops it with probability α. Where it passes one that bounds a
+/// body it enters or leaves the body. Nothing if the ray goes on to infinity.
 ///
+/// - `interior`: the bodies that it starts in, then those that it arrives in
+/// - `weight`: is multiplied by what the bodies on the way leave of the radiance
 /// - `segment`: how many reflections the path has made, so that each part of it draws numbers of its own
 pub(super) fn arrive<'a>(
     scene: &'a Scene,
     ray: &Ray,
+    interior: &mut Interior,
+    weight: &mut [f32; 3],
     segment: u32,
     stream: &mut SampleStream,
     counts: &mut RayCounts,
@@ -44,11 +52,28 @@ pub(super) fn arrive<'a>(
     let mut travelled = 0.0;
     for passed in 0..dimension::MOST_PASSED {
         counts.nearest += 1;
-        let point = scene.intersect(&ray)?;
+        let Some(point) = scene.intersect(&ray) else {
+            if !interior.is_outside() {
+                *weight = interior.absorb(*weight, ray.t_max);
+            }
+            return None;
+        };
         let shading = scene.shade(&point, wo_world);
+        let bounds_a_body = scene.bounds_a_body(&shading);
+        if bounds_a_body {
+            let body = scene.body(&point, &shading.model);
+            let inner = wo_world.dot(point.ng) < 0.0;
+            *weight = interior.arrive(&body, inner, *weight, point.t);
+        } else if !interior.is_outside() {
+            *weight = interior.absorb(*weight, point.t);
+        }
         if shading.alpha < 1.0 && passed + 1 < dimension::MOST_PASSED {
             stream.seek(dimension::of_opacity(segment, passed));
             if stream.next_1d() >= shading.alpha {
+                if bounds_a_body {
+                    let inwards = ray.direction.dot(point.ng) < 0.0;
+                    interior.cross(&scene.body(&point, &shading.model), inwards);
+                }
                 travelled += point.t;
                 let t_max = ray.t_max - point.t;
                 ray = point.spawn_ray(ray.direction);
@@ -61,6 +86,8 @@ pub(super) fn arrive<'a>(
             wo: shading.frame.to_local(wo_world),
             wo_world,
             model: shading.model,
+            transmits: shading.transmits,
+            bounds_a_body,
             albedo: shading.albedo,
             material: scene.geometry.instances()[point.instance as usize].material,
             distance: travelled + point.t,
@@ -79,13 +106,12 @@ pub(super) fn environment_radiance(scene: &Scene, d: Vec3<f32>) -> [f32; 3] {
 }
 
 impl Vertex<'_> {
-    /// f(ωi→ωr)·|cosθi| and the density of [`Vertex::sample`] for the world direction `wi`. Zero where `wi` and the
-    /// viewer are on different sides of the true surface, which an interpolated normal could otherwise let light through.
+    /// f(ωi→ωr)·|cosθi| and the density of [`Vertex::sample`] for the world direction `wi`. Zero where [`Vertex::admits`] says no.
     pub(super) fn eval_cos(&self, wi: Vec3<f32>) -> ([f32; 3], f32) {
-        if !self.same_side(wi) {
+        let local = self.frame.to_local(wi);
+        if !self.admits(wi, local) {
             return ([0.0; 3], 0.0);
         }
-        let local = self.frame.to_local(wi);
         self.model.eval_cos_and_pdf(local, self.wo)
     }
 
@@ -95,20 +121,67 @@ impl Vertex<'_> {
         if sample.pdf <= 0.0 {
             return None;
         }
-        sample.wi = self.frame.to_world(sample.wi);
-        self.same_side(sample.wi).then_some(sample)
+        let local = sample.wi;
+        sample.wi = self.frame.to_world(local);
+        self.admits(sample.wi, local).then_some(sample)
     }
 
+    /// Whether the reflection function may scatter light from `wi` to the viewer, as far as sides are concerned. Interpolated and mapped
+    /// normals could otherwise let light through a surface, or past it.
+    ///
+    /// A function that only reflects needs `wi` and the viewer on the same side of the true surface. For one that transmits it is the
+    /// true surface that decides whether light passes, and `wi` has to lie on the same side of the frame.
+    fn admits(&self, wi: Vec3<f32>, local: Vec3<f32>) -> bool {
+        if self.transmits {
+            wi.dot(self.point.ng) * local.z > 0.0
+        } else {
+            self.same_side(wi)
+        }
+    }
+
+    /// Whether `wi` and the viewer are on the same side of the true surface.
     fn same_side(&self, wi: Vec3<f32>) -> bool {
         wi.dot(self.point.ng) * self.wo_world.dot(self.point.ng) > 0.0
     }
 
-    /// Light from `sample` reflected toward the viewer, times the weight that `weight` gives it for the density with which
+    /// The normal of the frame, on the viewer's side.
+    pub(super) fn facing_normal(&self) -> Vec3<f32> {
+        if self.wo.z < 0.0 {
+            -self.frame.n
+        } else {
+            self.frame.n
+        }
+    }
+
+    /// Leads from the bodies on the viewer's side to those on the side of `wi`.
+    pub(super) fn cross(&self, scene: &Scene, interior: &mut Interior, wi: Vec3<f32>) {
+        if self.bounds_a_body && !self.same_side(wi) {
+            let inwards = wi.dot(self.point.ng) < 0.0;
+            interior.cross(&scene.body(&self.point, &self.model), inwards);
+        }
+    }
+
+    /// Takes the scaling of radiance by a refracting boundary out of the weight of light from `wi` again, n(ωi)²/n(ωr)²: then weights
+    /// are shares of energy (Veach 1997, §5.2).
+    pub(super) fn unscale(&self, weight: &mut [f32; 3], wi: Vec3<f32>) {
+        if !self.transmits || self.same_side(wi) {
+            return;
+        }
+        let inwards = wi.dot(self.point.ng) < 0.0;
+        for (w, n) in weight.iter_mut().zip(self.model.relative_ior()) {
+            *w *= if inwards { n * n } else { 1.0 / (n * n) };
+        }
+    }
+
+    /// Light from `sample` scattered toward the viewer, times the weight that `weight` gives it for the density with which
     /// the reflection function would draw the same direction.
+    ///
+    /// - `interior`: the bodies on the viewer's side
     pub(super) fn reflect_light(
         &self,
         scene: &Scene,
         sample: &LightSample,
+        interior: &Interior,
         counts: &mut RayCounts,
         weight: impl Fn(f32) -> f32,
     ) -> [f32; 3] {
@@ -123,11 +196,16 @@ impl Vertex<'_> {
         if contribution == [0.0; 3] {
             return contribution;
         }
-        let ray = match sample.target {
-            LightTarget::Point(target) => self.point.spawn_ray_to(target),
-            LightTarget::Infinite => self.point.spawn_ray(sample.wi),
-        };
         counts.shadow += 1;
-        scaled(contribution, scene.transmittance(&ray))
+        let mut beyond;
+        let interior = if self.bounds_a_body {
+            beyond = *interior;
+            self.cross(scene, &mut beyond, sample.wi);
+            &beyond
+        } else {
+            interior
+        };
+        let left = scene.transmittance(&self.point, sample.wi, sample.target, interior);
+        product(contribution, left)
     }
 }

@@ -1,6 +1,8 @@
 //! Small scenes with known answers, and the statistics to compare with them.
 #![allow(dead_code)]
 
+pub mod glass;
+
 use gonio_brdf::ModelSpec;
 use gonio_env::Environment;
 use gonio_num::{Affine3, Vec3};

@@ -93,6 +93,7 @@ impl Emitter {
     /// Nothing if `from` lies in the plane of a rectangle, as far as its error lets one say. A point on the rectangle itself
     /// may by rounding be on either side of it, and from just off its front the rectangle fills a hemisphere: its back
     /// would seem lit by its front.
+    #[inline]
     pub fn sample(
         &self,
         geometry: &Geometry,

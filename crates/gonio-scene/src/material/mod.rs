@@ -10,11 +10,15 @@ use crate::{SceneError, SurfacePoint, Texture};
 use gonio_brdf::{Brdf, Kind, Model, ModelSpec, ParameterSlot, Value};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::{SampleStream, SamplerKind};
+use std::borrow::Cow;
 
 /// A surface's reflection function with the textures that drive its parameters, and its emission, opacity and normal map.
 ///
 /// Both sides of a surface reflect, whatever [`Material::double_sided`] says: an open mesh seen from behind is not black, and
 /// no light leaks through it. Single-sided materials *shine* on their front alone.
+///
+/// A reflection function that transmits makes the surface the boundary of a body, whose inner side lies behind the geometric normal; see
+/// [`crate::Interior`] for what the body absorbs.
 #[derive(Debug, Clone)]
 pub struct Material {
     /// Its name in the scene, for replacing it and for messages.
@@ -29,6 +33,8 @@ pub struct Material {
     pub double_sided: bool,
     spec: ModelSpec,
     model: Model<f32, 3>,
+    /// Whether `model` transmits, textures left out.
+    model_transmits: bool,
     bindings: Vec<Binding>,
     albedo: [f32; 3],
     /// The binding whose value is the albedo, if one drives the model's colour.
@@ -105,11 +111,17 @@ impl Material {
             opacity: Opacity::default(),
             double_sided: false,
             spec: spec.clone(),
+            model_transmits: model.transmits(),
             model,
             bindings: Vec::new(),
             albedo,
             albedo_binding: None,
         })
+    }
+
+    /// What a user should know of the measured files that the model was read from.
+    pub fn warnings(&self) -> Vec<String> {
+        self.model.warnings()
     }
 
     /// The description of the model, without its textures.
@@ -124,6 +136,7 @@ impl Material {
     /// [`SceneError::Brdf`] if the model can't be built; the material is then unchanged.
     pub fn replace_model(&mut self, spec: &ModelSpec) -> Result<(), SceneError> {
         self.model = spec.build()?;
+        self.model_transmits = self.model.transmits();
         self.spec = spec.clone();
         self.bindings.clear();
         self.albedo = normal_albedo(&self.model);
@@ -152,6 +165,40 @@ impl Material {
         Ok(())
     }
 
+    /// The model with the textures all white: what is driven has its largest value.
+    fn largest_model(&self) -> Cow<'_, Model<f32, 3>> {
+        if self.bindings.is_empty() {
+            return Cow::Borrowed(&self.model);
+        }
+        let mut model = self.model.clone();
+        for binding in &self.bindings {
+            model.set_parameter(binding.slot, binding.base);
+        }
+        Cow::Owned(model)
+    }
+
+    /// Whether light may pass through the surface somewhere.
+    pub fn transmits(&self) -> bool {
+        self.largest_model().transmits()
+    }
+
+    /// Whether it bounds a body that absorbs.
+    pub fn absorbs(&self) -> bool {
+        let model = self.largest_model();
+        model.transmits() && model.absorption().iter().any(|&sigma| sigma > 0.0)
+    }
+
+    /// Whether it bounds a body, which a thin pane doesn't.
+    pub(crate) fn is_boundary(&self) -> bool {
+        bounds_a_body(&self.largest_model())
+    }
+
+    /// Whether all light that passes goes on in a single direction, so that no light without extent can be found through it.
+    pub(crate) fn transmits_smoothly(&self) -> bool {
+        let model = self.largest_model();
+        model.transmits() && model.is_delta()
+    }
+
     /// The names of the parameters that textures or vertex colours drive.
     pub fn driven_parameters(&self) -> impl Iterator<Item = &'static str> + '_ {
         self.bindings.iter().map(|b| b.parameter)
@@ -170,7 +217,9 @@ impl Material {
             Some(Value::Colour(c)) => c.map(|x| x as f32),
             _ => [1.0; 3],
         };
-        if matches!(declared.kind, Kind::Colour { .. }) && self.albedo_binding.is_none() {
+        // A colour that may exceed 1, such as an absorption coefficient, is no share of light.
+        let is_share = matches!(declared.kind, Kind::Colour { high, .. } if high <= 1.0);
+        if is_share && self.albedo_binding.is_none() {
             self.albedo_binding = Some(self.bindings.len());
         }
         self.bindings.push(Binding {
@@ -263,16 +312,24 @@ impl Opacity {
     }
 }
 
-/// The share of light that comes back when seen along the normal: the mean weight of 64 samples, within \[0, 1].
+/// Whether the surface of a model parts two media: it transmits, and refracts or absorbs.
+pub(crate) fn bounds_a_body(model: &Model<f32, 3>) -> bool {
+    model.transmits() && (model.relative_ior() != [1.0; 3] || model.absorption() != [0.0; 3])
+}
+
+/// The share of light that is scattered when seen along the normal, the light that passes included: the mean weight of 64 samples,
+/// within \[0, 1]. What passes is counted without the scaling of radiance by n², so that clear glass is white.
 fn normal_albedo(model: &Model<f32, 3>) -> [f32; 3] {
     const SAMPLES: u32 = 64;
     let wo = Vec3::new(0.0, 0.0, 1.0);
+    let ior = model.relative_ior();
     let mut sum = [0.0_f64; 3];
     for i in 0..SAMPLES {
         let sample = model.sample(wo, SampleStream::new(SamplerKind::Sobol, 0, 0, i).next_3d());
         if sample.pdf > 0.0 {
-            for (s, w) in sum.iter_mut().zip(sample.weight) {
-                *s += f64::from(w);
+            for (k, w) in sample.weight.into_iter().enumerate() {
+                let squeezed = if sample.wi.z < 0.0 { ior[k] } else { 1.0 };
+                sum[k] += f64::from(w * squeezed * squeezed);
             }
         }
     }

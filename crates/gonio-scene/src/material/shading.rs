@@ -2,20 +2,23 @@
 
 use super::{Binding, Material};
 use crate::SurfacePoint;
-use gonio_brdf::Model;
+use gonio_brdf::{Brdf, Model};
 use gonio_num::{Frame, Vec3};
 use std::borrow::Cow;
 
-/// Smallest cosine between the shading normal and the direction to the viewer.
+/// Smallest cosine between the direction to the viewer and the shading normal on the viewer's side.
 const MIN_COS: f32 = 1e-3;
 
 /// What a surface is at one point, as one viewer sees it.
 #[derive(Debug, Clone)]
 pub struct Shading<'a> {
-    /// Local coordinates of the reflection function: normal +z on the viewer's side, +x along the tangent.
+    /// Local coordinates of the reflection function: +x along the tangent; normal +z on the viewer's side for a function that
+    /// only reflects, on the outer side of the surface for one that transmits.
     pub frame: Frame<f32>,
     /// The reflection function, its textured parameters set.
     pub model: Cow<'a, Model<f32, 3>>,
+    /// Whether the reflection function transmits here: [`Brdf::transmits`].
+    pub transmits: bool,
     /// Share of light that the surface stops, in \[0, 1]: 1 is opaque.
     pub alpha: f32,
     /// About the share of light reflected, for an image of the colours alone.
@@ -30,12 +33,16 @@ impl Material {
     /// would be black. So a normal n with n·wo < c = 0.001 becomes n + (c − n·wo) wo, normalised: its part across wo stays, its
     /// part along wo is raised to c. The result is continuous, always in wo's hemisphere and never NaN.
     ///
+    /// A function that transmits is one of both sides, the outer and the inner one. There the normal, found in the same way, is turned
+    /// back to the outer side, that of the geometric normal: the local direction to the viewer has z < 0 where the surface is
+    /// seen from its inner side. A part of a sum that only reflects is then black on the inner side, where alone it would
+    /// reflect as on the outer one.
+    ///
     /// Nothing is allocated unless the model itself holds allocated parts (a sum) *and* is textured.
     pub fn shade(&self, point: &SurfacePoint, wo: Vec3<f32>) -> Shading<'_> {
-        let normal = facing(self.bent_normal(point), point.ng, wo);
-        let frame = Frame::from_normal_tangent(normal, point.tangent);
         let alpha = self.opacity.at(point);
         let mut albedo = self.albedo;
+        let mut transmits = self.model_transmits;
         let model = if self.bindings.is_empty() {
             Cow::Borrowed(&self.model)
         } else {
@@ -47,11 +54,18 @@ impl Material {
                     albedo = value;
                 }
             }
+            transmits = model.transmits();
             Cow::Owned(model)
         };
+        let mut normal = facing(self.bent_normal(point), point.ng, wo);
+        if transmits && point.ng.dot(wo) < 0.0 {
+            normal = -normal;
+        }
+        let frame = Frame::from_normal_tangent(normal, point.tangent);
         Shading {
             frame,
             model,
+            transmits,
             alpha,
             albedo,
         }

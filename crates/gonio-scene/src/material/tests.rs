@@ -253,3 +253,69 @@ fn albedo_is_what_comes_back() {
         1e-5,
     );
 }
+
+/// Clear glass takes nothing away, its scaling of radiance aside; an absorption coefficient is no share of light, whatever drives it.
+#[test]
+fn glass_is_white() {
+    for spec in ["glass", "glass:ior=0.7", "thin-dielectric"] {
+        near(material(spec).shade(&point(0.2), UP).albedo, [1.0; 3], 1e-5);
+    }
+    // F = 0.04 is reflected, and 0.96 · ½ passes; the share of samples that chose to reflect is off by half of one of 64.
+    near(
+        material("glass:transmittance=0.5")
+            .shade(&point(0.2), UP)
+            .albedo,
+        [0.52; 3],
+        0.01,
+    );
+    let texture = || two([255, 0, 0, 255], [0, 255, 51, 255], Transfer::Linear);
+    let mut m = material("glass:absorption=100");
+    m.bind_texture("absorption", TextureInput::new(texture(), Channels::Rgb))
+        .unwrap();
+    near(m.shade(&point(0.2), UP).albedo, [1.0; 3], 1e-5);
+    assert!(m.absorbs());
+    m.bind_texture("transmittance", TextureInput::new(texture(), Channels::Rgb))
+        .unwrap();
+    near(m.shade(&point(0.2), UP).albedo, [1.0, 0.0, 0.0], 1e-6);
+}
+
+/// The frame of what transmits stays on the outer side; that of what reflects turns to the viewer. In both, a bent normal keeps the
+/// viewer on the side of the true surface that it sees.
+#[test]
+fn the_frame_of_glass_stays_outside() {
+    let mut p = point(0.2);
+    for (ns, wo) in [
+        (UP, UP),
+        (UP, -UP),
+        (Vec3::new(0.0, 0.8, 0.6), Vec3::new(0.0, -0.8, 0.6)),
+        (Vec3::new(0.0, 0.8, 0.6), Vec3::new(0.0, 0.8, -0.6)),
+        (Vec3::new(0.0, 0.8, 0.6), Vec3::new(0.0, 0.999, -0.04)),
+    ] {
+        p.ns = ns;
+        let wo = wo.normalize();
+        for (spec, transmits) in [
+            ("glass", true),
+            ("thin-dielectric", true),
+            ("lambertian", false),
+        ] {
+            let material = material(spec);
+            let shading = material.shade(&p, wo);
+            assert_eq!(shading.transmits, transmits);
+            let z = shading.frame.to_local(wo).z;
+            let side = if transmits { wo.z } else { 1.0 };
+            assert!(
+                z * side > 0.0 && z.abs() > 0.9e-3,
+                "{spec} {ns:?} {wo:?}: {z}"
+            );
+        }
+    }
+}
+
+/// A sum transmits if a part does, and its frame is that of glass.
+#[test]
+fn a_sum_with_glass_transmits() {
+    let m = material("sum(lambertian:reflectance=0.2, glass:transmittance=0.5,reflectance=0.5)");
+    assert!(m.transmits() && !m.absorbs());
+    let shading = m.shade(&point(0.2), -UP);
+    assert!(shading.transmits && shading.frame.n == UP);
+}

@@ -62,6 +62,29 @@ impl TriangleMesh {
         (b - a).cross(c - a)
     }
 
+    /// Whether the mesh is closed and its triangles' fronts face what it encloses.
+    ///
+    /// Taken for closed is a mesh whose area vectors add up to nothing, to 1e-4 of its area: that needs no shared vertices. Then
+    /// its volume, ⅙ Σ a·(b × c), is negative if the fronts face inwards.
+    ///
+    /// # Panics
+    /// If an index is out of range.
+    pub fn is_inside_out(&self) -> bool {
+        let Some(&origin) = self.positions.first() else {
+            return false;
+        };
+        let (mut sum, mut area, mut volume) = (Vec3::<f64>::zero(), 0.0, 0.0);
+        for triangle in 0..self.indices.len() {
+            let vector = self.area_vector(triangle);
+            let corner = self.corners(triangle)[0].to_f64() - origin.to_f64();
+            sum += vector;
+            area += vector.length();
+            // a·(b × c) with the origin at the first vertex, which for triangle abc is a·((b − a) × (c − a)).
+            volume += corner.dot(vector);
+        }
+        sum.length() < 1e-4 * area && volume < 0.0
+    }
+
     /// Adds another mesh's triangles. An attribute that only one of the two has is filled up with its neutral value:
     /// normal 0, texture coordinate (0, 0), tangent 0, colour white.
     pub fn append(&mut self, other: &TriangleMesh) {

@@ -1,10 +1,10 @@
 //! `sample` against `pdf`: the integral of the density, and the χ² test of the drawn directions.
 
-use super::furnace::{SECOND_LOOK, outgoing};
+use super::furnace::{SECOND_LOOK, lobes, viewers};
 use super::rng;
 use crate::check::Checker;
 use crate::cubature::integrate;
-use crate::directions::{at_height, mirror};
+use crate::directions::at_height;
 use crate::partition::{Partition, Pilot, Rules, coordinates};
 use crate::statistics::{
     TestResult, chi_square_test_with_slack, sidak, sidak_p_value, wilson_interval,
@@ -68,7 +68,7 @@ fn look(c: &Checker, wo: Vec3<f64>, index: usize, tail: f64, harder: u64) -> Opt
         max_solid_angle: 0.2 / harder as f64,
         seed_width: 0.05,
     };
-    let partition = Partition::new(points, &[mirror(wo), wo], &rules, true);
+    let partition = Partition::new(points, &lobes(c, wo), &rules, true);
     let integral = integrate(
         |[z, phi]| [pdf(at_height(z, phi), wo)],
         &partition.cells,
@@ -159,7 +159,7 @@ pub(super) fn check(c: &Checker) -> [Verdict; 2] {
         return not_applicable("the subject can't be sampled");
     }
     let rate = c.settings.false_positive_rate;
-    let directions = outgoing(c.settings.directions, 86.0);
+    let directions = viewers(c, c.settings.directions, 86.0);
     let each = sidak(rate, directions.len() as u64);
     let mut looks: Vec<Look> = Vec::new();
     for (index, wo) in directions.into_iter().enumerate() {

@@ -3,7 +3,7 @@
 use super::rng;
 use crate::check::Checker;
 use crate::cubature::integrate;
-use crate::directions::{at_height, mirror, spherical};
+use crate::directions::{Region, at_height, flipped, mirror, refracted, spherical};
 use crate::partition::{Partition, Pilot, Rules, coordinates};
 use crate::statistics::{Moments, bernstein_deviation};
 use crate::verdict::Property;
@@ -13,7 +13,8 @@ use gonio_num::Vec3;
 pub(super) const SECOND_LOOK: u64 = 8;
 
 /// What uniform light of radiance 1 becomes towards `wo`: a(ωo) = ∫ f(ωi, ωo) |cosθi| dωi, the directional albedo (by
-/// reciprocity the reflected fraction of a beam from ωo).
+/// reciprocity the reflected fraction of a beam from ωo). Where light also passes through, it is uniform in units of the
+/// squared index of refraction: a(ωo) = ∫ f(ωi, ωo) n(ωi)²/n(ωo)² |cosθi| dωi over the sphere.
 pub(super) struct Furnace {
     pub wo: Vec3<f64>,
     /// The albedo of all but Dirac deltas by quadrature, each channel, with its error.
@@ -24,7 +25,7 @@ pub(super) struct Furnace {
     pub unreachable_error: f64,
     /// Where the most of it was seen.
     pub unreachable_at: Option<Vec3<f64>>,
-    /// ∫ (f cosθ)² / pdf: the second moment of the weight, each channel.
+    /// ∫ (f cosθ n²/n²)² / pdf: the second moment of the weight, each channel.
     pub second_moment: [f64; 3],
     /// The largest f cosθ / pdf that the quadrature met.
     pub largest_weight: f64,
@@ -48,9 +49,30 @@ pub(super) fn outgoing(count: u32, steepest_deg: f64) -> Vec<Vec3<f64>> {
         .collect()
 }
 
+/// [`outgoing`], and for a subject that transmits the same number below the horizon, with other azimuths.
+pub(super) fn viewers(c: &Checker, count: u32, steepest_deg: f64) -> Vec<Vec3<f64>> {
+    let mut all = outgoing(count, steepest_deg);
+    if !c.subject.only_reflects() {
+        let below = all
+            .iter()
+            .map(|w| flipped(crate::directions::turned(*w, 1.0)));
+        all.extend(below.collect::<Vec<_>>());
+    }
+    all
+}
+
+/// Where a lobe towards `wo` may stand.
+pub(super) fn lobes(c: &Checker, wo: Vec3<f64>) -> Vec<Vec3<f64>> {
+    let mut all = vec![mirror(wo), wo];
+    if let Region::Sphere { relative_ior } = c.subject.region() {
+        all.extend([refracted(wo, relative_ior), -wo]);
+    }
+    all
+}
+
 /// A furnace for each of twice the usual number of directions, up to 89.5°.
 pub(super) fn measure(c: &Checker) -> Vec<Furnace> {
-    outgoing(2 * c.settings.directions, 89.5)
+    viewers(c, 2 * c.settings.directions, 89.5)
         .into_iter()
         .enumerate()
         .map(|(k, wo)| {
@@ -130,7 +152,7 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
         let s = c.subject.draw(wo, u);
         let is_delta = s.is_some_and(|s| s.delta);
         delta_draws += u64::from(is_delta);
-        let weight = s.map_or([0.0; 3], |s| s.weight);
+        let weight = s.map_or([0.0; 3], |s| c.subject.basic(s.weight, s.wi, wo));
         for k in 0..3 {
             // What isn't finite is another property's business and must not blind this one.
             let w = if weight[k].is_finite() {
@@ -147,7 +169,7 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
         if let Some(s) = s.filter(|s| !s.delta && s.wi.is_finite())
             && points.len() < pilot
         {
-            let brightest = s.weight.iter().fold(1.0, |a: f64, w| a.max(*w));
+            let brightest = weight.iter().fold(1.0, |a: f64, w| a.max(*w));
             points.push(Pilot {
                 at: coordinates(s.wi),
                 density: s.pdf * brightest,
@@ -163,14 +185,15 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
         // Without samples, or with samples of something else, nothing but this shows where a sharp lobe stands.
         seed_width: 1e-3,
     };
-    let seeds = [mirror(wo), wo, Vec3::new(0.0, 0.0, 1.0)];
-    let partition = Partition::new(points, &seeds, &rules, !c.settings.reflection_only);
+    let mut seeds = lobes(c, wo);
+    seeds.push(Vec3::new(0.0, 0.0, 1.0));
+    let partition = Partition::new(points, &seeds, &rules, !c.subject.only_reflects());
     let mut unreachable_at = None;
     let mut most = 0.0;
     let integral = integrate(
         |[z, phi]| {
             let wi = at_height(z, phi);
-            let f = (c.subject.eval)(wi, wo);
+            let f = c.subject.basic((c.subject.eval)(wi, wo), wi, wo);
             let [r, g, b] = f.map(|f| f * z.abs());
             let brightest = r.max(g).max(b);
             let Some(pdf) = c.subject.pdf else {

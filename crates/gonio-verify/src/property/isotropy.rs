@@ -16,7 +16,8 @@ pub(super) fn check(c: &Checker) -> Verdict {
     let eval = c.subject.eval;
     let mut random = rng(c, Property::Isotropy, "angles");
     let angles: [f64; 4] = std::array::from_fn(|_| TAU * random.next_f64());
-    let scale = typical(eval, &mut random);
+    let region = c.subject.region();
+    let scale = typical(eval, region, &mut random);
     let at = |wi: Vec3<f64>, wo: Vec3<f64>| {
         let f = eval(wi, wo);
         let mut worst = (0.0, angles[0]);
@@ -30,6 +31,7 @@ pub(super) fn check(c: &Checker) -> Verdict {
     };
     let worst = worst_pair(
         &mut rng(c, Property::Isotropy, "pairs"),
+        region,
         c.settings.pairs / 2,
         c.settings.nudge(),
         |wi, wo| at(wi, wo).0,
@@ -56,6 +58,7 @@ pub(super) fn check(c: &Checker) -> Verdict {
     let flipped = |w: Vec3<f64>| Vec3::new(w.x, -w.y, w.z);
     let handed = worst_pair(
         &mut rng(c, Property::Isotropy, "bilateral"),
+        region,
         c.settings.pairs / 4,
         c.settings.nudge(),
         |wi, wo| relative_difference(eval(wi, wo), eval(flipped(wi), flipped(wo)), scale),

@@ -22,9 +22,11 @@ pub(super) fn check(c: &Checker) -> Verdict {
         }
         total
     };
-    let scale = typical(eval, &mut rng(c, Property::Linearity, "typical"));
+    let region = c.subject.region();
+    let scale = typical(eval, region, &mut rng(c, Property::Linearity, "typical"));
     let worst = worst_pair(
         &mut rng(c, Property::Linearity, "pairs"),
+        region,
         c.settings.pairs,
         c.settings.nudge(),
         |wi, wo| relative_difference(eval(wi, wo), sum(wi, wo), scale),

@@ -1,19 +1,26 @@
-//! f(ωi→ωr) = f(ωr→ωi).
+//! f(ωi→ωr) n(ωi)² = f(ωr→ωi) n(ωr)², n the index of refraction of the side that a direction is on.
 
 use super::{relative_difference, rng, with_colour};
 use crate::check::Checker;
 use crate::search::{typical, worst_pair};
 use crate::verdict::{Property, Verdict, Witness};
+use gonio_num::Vec3;
 
-/// The worst relative difference of f(wi, wo) and f(wo, wi).
+/// The worst relative difference of f(wi, wo) n(wi)² and f(wo, wi) n(wo)²; n is 1 for what only reflects.
 ///
 /// No chance enters a failure: the difference at the witness is above the bound whatever the random numbers were, and
 /// the bound is far above what rounding makes of the same formula with its arguments exchanged.
 pub(super) fn check(c: &Checker) -> Verdict {
-    let eval = c.subject.eval;
-    let scale = typical(eval, &mut rng(c, Property::Reciprocity, "typical"));
+    let (subject, region) = (c.subject, c.subject.region());
+    // Radiance in units of n² of the side it arrives from: what both orders of the directions must agree on.
+    let eval = |wi: Vec3<f64>, wo: Vec3<f64>| {
+        let (f, n2) = ((subject.eval)(wi, wo), subject.index_squared(wi));
+        [0, 1, 2].map(|k| f[k] * n2[k])
+    };
+    let scale = typical(&eval, region, &mut rng(c, Property::Reciprocity, "typical"));
     let worst = worst_pair(
         &mut rng(c, Property::Reciprocity, "pairs"),
+        region,
         c.settings.pairs,
         c.settings.nudge(),
         |wi, wo| relative_difference(eval(wi, wo), eval(wo, wi), scale),
@@ -27,11 +34,16 @@ pub(super) fn check(c: &Checker) -> Verdict {
     );
     let (a, b) = (eval(worst.wi, worst.wo), eval(worst.wo, worst.wi));
     let witness = Witness::pair(worst.wi, worst.wo);
-    let witness = with_colour(witness, "f(wi, wo)", a);
-    v.witness = Some(with_colour(witness, "f(wo, wi)", b));
+    let names = if subject.only_reflects() {
+        ["f(wi, wo)", "f(wo, wi)"]
+    } else {
+        ["f(wi, wo)·n(wi)²", "f(wo, wi)·n(wo)²"]
+    };
+    let witness = with_colour(witness, names[0], a);
+    v.witness = Some(with_colour(witness, names[1], b));
     v.detail = format!(
-        "worst relative difference of f(wi, wo) and f(wo, wi): {:.3e}",
-        worst.figure
+        "worst relative difference of {} and {}: {:.3e}",
+        names[0], names[1], worst.figure
     );
     v.judge(worst.figure > bound, c.expect.reciprocal)
 }

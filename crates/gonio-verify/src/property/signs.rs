@@ -2,7 +2,9 @@
 
 use super::rng;
 use crate::check::Checker;
-use crate::directions::{awkward, awkward_about, awkward_numbers, random_pair};
+use crate::directions::{
+    Region, awkward, awkward_about, awkward_numbers, flipped as down, random_pair,
+};
 use crate::search::typical;
 use crate::verdict::{Property, Verdict, Witness};
 use gonio_num::Vec3;
@@ -53,7 +55,7 @@ impl Sweep<'_, '_> {
 
     fn pair(&mut self, wi: Vec3<f64>, wo: Vec3<f64>) {
         self.samples += 1;
-        let below = self.c.settings.reflection_only && (wi.z < 0.0 || wo.z < 0.0);
+        let below = self.c.subject.only_reflects() && (wi.z < 0.0 || wo.z < 0.0);
         let f = (self.c.subject.eval)(wi, wo);
         for x in f {
             self.number(x, self.scale, || Witness::pair(wi, wo).value("f", x));
@@ -86,7 +88,7 @@ impl Sweep<'_, '_> {
         for x in s.weight {
             self.number(x, 1.0, || witness().value("weight", x));
         }
-        if self.c.settings.reflection_only && (s.wi.z < 0.0 || wo.z < 0.0) {
+        if self.c.subject.only_reflects() && (s.wi.z < 0.0 || wo.z < 0.0) {
             let size = s.weight.iter().fold(0.0, |a: f64, w| a.max(w.abs()));
             self.below.add(size, || {
                 witness()
@@ -101,7 +103,7 @@ impl Sweep<'_, '_> {
 /// corpus of awkward random numbers. No chance is involved in a failure: each is a value that was returned.
 pub(super) fn check(c: &Checker) -> [Verdict; 3] {
     let mut random = rng(c, Property::Finite, "pairs");
-    let scale = typical(c.subject.eval, &mut random);
+    let scale = typical(c.subject.eval, c.subject.region(), &mut random);
     let mut sweep = Sweep {
         c,
         not_finite: Tally::new(),
@@ -110,7 +112,6 @@ pub(super) fn check(c: &Checker) -> [Verdict; 3] {
         samples: 0,
         scale,
     };
-    let down = |w: Vec3<f64>| Vec3::new(w.x, w.y, -w.z);
     for wo in awkward() {
         for wi in awkward_about(wo) {
             sweep.pair(wi, wo);
@@ -124,7 +125,7 @@ pub(super) fn check(c: &Checker) -> [Verdict; 3] {
         }
     }
     for k in 0..c.settings.pairs {
-        let (wi, wo) = random_pair(&mut random);
+        let (wi, wo) = random_pair(&mut random, Region::Above);
         sweep.pair(wi, wo);
         let u = [random.next_f64(), random.next_f64(), random.next_f64()];
         sweep.draw(wo, u);
@@ -132,7 +133,7 @@ pub(super) fn check(c: &Checker) -> [Verdict; 3] {
             0 => sweep.pair(down(wi), wo),
             1 => sweep.pair(wi, down(wo)),
             2 => sweep.draw(down(wo), u),
-            _ => {}
+            _ => sweep.pair(down(wi), down(wo)),
         }
     }
     let Sweep {
@@ -163,7 +164,7 @@ pub(super) fn check(c: &Checker) -> [Verdict; 3] {
         negative,
         "negative value",
     );
-    let horizon = if c.settings.reflection_only {
+    let horizon = if c.subject.only_reflects() {
         let figure = below.worst;
         verdict(
             Property::Horizon,

@@ -1,9 +1,9 @@
 //! weight = f·|cosθi| / pdf.
 
-use super::furnace::{Furnace, outgoing};
+use super::furnace::{Furnace, viewers};
 use super::rng;
 use crate::check::Checker;
-use crate::directions::{awkward, awkward_numbers, moved};
+use crate::directions::{awkward, awkward_numbers, flipped, moved};
 use crate::statistics::sidak;
 use crate::subject::SubjectSample;
 use crate::verdict::{Property, Verdict, Witness};
@@ -84,7 +84,7 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
         compared: 0,
     };
     let mut random = rng(c, property, "draws");
-    let directions = outgoing(4 * c.settings.directions, 89.9);
+    let directions = viewers(c, 4 * c.settings.directions, 89.9);
     let each = c.settings.pairs / directions.len() as u64 + 1;
     for wo in directions {
         for _ in 0..each {
@@ -95,7 +95,11 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
             }
         }
     }
-    for wo in awkward().into_iter().filter(|w| w.z > 1e-3) {
+    let mut steep: Vec<_> = awkward().into_iter().filter(|w| w.z > 1e-3).collect();
+    if !c.subject.only_reflects() {
+        steep.extend(steep.clone().into_iter().map(flipped));
+    }
+    for wo in steep {
         for u in awkward_numbers() {
             worst.samples += 1;
             if let Some(s) = c.subject.draw(wo, u) {

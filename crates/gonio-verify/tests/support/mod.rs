@@ -26,6 +26,7 @@ pub fn with_subject<T>(name: &str, r: &dyn Reflection, body: impl FnOnce(&Subjec
         eval: &eval,
         pdf: Some(&pdf),
         sample: Some(&sample),
+        relative_ior: None,
     })
 }
 
@@ -143,6 +144,51 @@ impl Reflection for Ggx {
         let wi = wo.reflect(h);
         if wi.z <= 0.0 || !wi.is_finite() {
             return None;
+        }
+        consistent(self, wi, wo)
+    }
+}
+
+/// An ideal diffuser between two media: whatever arrives leaves evenly to all sides, in equilibrium with radiance n².
+/// f = n(ωr)²/(π (1 + η²)), drawn by the cosine on the side chosen by its share n²/(1 + η²); that of the mean index.
+pub struct Frosted {
+    pub ior: [f64; 3],
+    /// Whether the factor n(ωr)² is there.
+    pub scaled: bool,
+}
+
+impl Frosted {
+    fn share_below(&self) -> f64 {
+        let n2 = self.ior.iter().map(|n| n * n).sum::<f64>() / 3.0;
+        n2 / (1.0 + n2)
+    }
+}
+
+impl Reflection for Frosted {
+    fn eval(&self, wi: V, wo: V) -> [f64; 3] {
+        if wi.z == 0.0 || wo.z == 0.0 {
+            return [0.0; 3];
+        }
+        self.ior.map(|n| {
+            let scale = if wo.z < 0.0 && self.scaled {
+                n * n
+            } else {
+                1.0
+            };
+            scale / (PI * (1.0 + n * n))
+        })
+    }
+    fn pdf(&self, wi: V, wo: V) -> f64 {
+        if wo.z == 0.0 {
+            return 0.0;
+        }
+        let below = self.share_below();
+        wi.z.abs() / PI * if wi.z < 0.0 { below } else { 1.0 - below }
+    }
+    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
+        let mut wi = Lambertian(1.0).sample(V::new(0.0, 0.0, 1.0), u)?.wi;
+        if u[2] < self.share_below() {
+            wi.z = -wi.z;
         }
         consistent(self, wi, wo)
     }

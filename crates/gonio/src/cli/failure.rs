@@ -142,6 +142,9 @@ impl From<BrdfError> for Failure {
                 Self::input(message).with_help(help_on_file(&path, source.kind()))
             }
             BrdfError::Format { .. } => Self::input(message).with_help(DAMAGED),
+            BrdfError::Interrupted => {
+                Self::interrupted(message).with_help("nothing was written: run it again")
+            }
             BrdfError::Parameter { model, .. } => Self::usage(message)
                 .with_help(help.unwrap_or(format!("see 'gonio brdf show {model}'"))),
             _ => Self::usage(message)

@@ -12,6 +12,7 @@ mod environment;
 mod failure;
 mod measure;
 mod parse;
+mod presets;
 mod progress;
 mod render;
 mod summary;

@@ -116,7 +116,7 @@ pub(crate) fn stop_requested() -> bool {
 }
 
 /// Begins to listen for the wish to stop. The first one is answered above `bar`; a second one ends the process at once.
-fn on_stop_request(bar: &ProgressBar) {
+pub(crate) fn on_stop_request(bar: &ProgressBar) {
     LISTENING.get_or_init(|| {
         let bar = bar.clone();
         // Without a handler the signal ends the process at once, which is the platform's default.

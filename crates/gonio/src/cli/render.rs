@@ -25,7 +25,8 @@ const NO_LIMIT: u32 = 1 << 20;
 #[command(after_help = "Examples:\n  \
     gonio render\n  \
     gonio render helmet.gltf --env sunset.hdr --spp 256 -o helmet.exr -o helmet.png\n  \
-    gonio render --material ggx:metal=copper,roughness=0.4 --time 30s\n\n\
+    gonio render --material ggx:metal=copper,roughness=0.4 --time 30s\n  \
+    gonio render --material glass:absorption=0.2/0.05/0.1 --spp 256\n\n\
     A small scene, ball.toml:\n  \
     [environment]\n  \
     uniform = 1.0\n\n  \
@@ -78,7 +79,7 @@ pub(super) struct Arguments {
     /// How the reflection equation is solved: over many reflections (path), or over one (direct)
     #[arg(long, value_enum, value_name = "NAME", default_value_t = IntegratorName::Path, help_heading = "Method")]
     integrator: IntegratorName,
-    /// Reflections that light may make, for the path integrator
+    /// Reflections that light may make, passages through surfaces included, for the path integrator
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = parse::whole(0, u32::MAX), allow_hyphen_values = true, help_heading = "Method")]
     max_bounces: u32,
     /// Where samples come from: Owen-scrambled Sobol' points, or independent random numbers

@@ -49,6 +49,10 @@ fn slips_of_the_pen_are_understood() {
             "did you mean `gold`?",
         ),
         (
+            vec!["render", "--material", "ward@gold-pant"],
+            "did you mean `ward@gold-paint`?",
+        ),
+        (
             vec!["env", "info", "uniform:1", "--env-layout", "anguler"],
             "did you mean \"angular\"?",
         ),

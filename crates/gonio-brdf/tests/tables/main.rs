@@ -1,0 +1,11 @@
+//! Measured tables, on tables made from models whose truth is known.
+
+// Helpers of tests are tests, and colours are short arrays walked side by side.
+#![allow(clippy::unwrap_used, clippy::needless_range_loop)]
+
+mod bad_input;
+mod conversion;
+mod formats;
+mod layouts;
+mod orientation;
+mod support;

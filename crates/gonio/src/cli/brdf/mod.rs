@@ -1,0 +1,405 @@
+//! `gonio brdf`.
+
+mod convert;
+mod info;
+
+use super::failure::Failure;
+use super::parse::{self, Angles};
+use super::presets;
+use super::terminal::{print, print_json, significant, warn};
+use gonio_brdf::{Brdf, Model, ModelInfo, ModelSpec, registry};
+use gonio_verify::{Effort, Report};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+use std::path::PathBuf;
+
+#[derive(clap::Subcommand)]
+#[command(after_help = "Example:\n  gonio brdf show torrance-sparrow")]
+pub(super) enum Command {
+    /// Name every reflection function
+    #[command(after_help = "Examples:\n  gonio brdf list\n  gonio brdf list --presets ward")]
+    List {
+        /// Name presets instead: the sets of every model, or what is in those of one
+        #[arg(long, value_name = "MODEL", num_args = 0..=1, default_missing_value = "")]
+        presets: Option<String>,
+        /// Print it as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// What a reflection function is: parameters, ranges, paper, declared properties
+    #[command(after_help = "Example:\n  gonio brdf show torrance-sparrow")]
+    Show {
+        /// Its name, or NAME@PRESET
+        name: String,
+        /// Print it as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// The value f(ωi→ωr) for a pair of directions, with the cosine and the density of sampling
+    #[command(
+        after_help = "Example:\n  gonio brdf eval ggx:metal=gold,roughness=0.3 --wi 45,0 --wo 45,180"
+    )]
+    Eval {
+        /// NAME or NAME:key=value,…
+        spec: String,
+        /// Direction to the light: θ,φ in degrees
+        #[arg(long, value_name = "θ,φ", value_parser = parse::angles, allow_hyphen_values = true)]
+        wi: Angles,
+        /// Direction to the viewer: θ,φ in degrees
+        #[arg(long, value_name = "θ,φ", value_parser = parse::angles, allow_hyphen_values = true)]
+        wo: Angles,
+        /// Print it as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// What a measured file holds: format, layout, channels, origin, faults
+    #[command(after_help = "Example:\n  gonio brdf info gold-paint.binary")]
+    Info {
+        /// A file of measured reflection, of any format
+        file: PathBuf,
+        /// Print it as JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// A measured file or a model as a file of another format or layout, and what that costs
+    #[command(after_help = convert::help())]
+    Convert(Box<convert::Arguments>),
+    /// Is it physical? Reciprocity, energy, isotropy, sampling, each with a bound and a witness
+    #[command(
+        after_help = "Examples:\n  gonio brdf check all\n  gonio brdf check phong:exponent=20 --effort thorough\n\n\
+        Exits with 1 if a property fails that is not declared to be missing."
+    )]
+    Check {
+        /// NAME, NAME:key=value,…, or all
+        spec: String,
+        /// How hard to look
+        #[arg(long, value_enum, default_value_t = EffortName::Standard)]
+        effort: EffortName,
+        /// Print the reports as JSON
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+pub(super) enum EffortName {
+    /// About a tenth of a second a model
+    Quick,
+    /// About a second a model
+    Standard,
+    /// About ten seconds a model
+    Thorough,
+}
+
+impl From<EffortName> for Effort {
+    fn from(name: EffortName) -> Self {
+        match name {
+            EffortName::Quick => Self::Quick,
+            EffortName::Standard => Self::Standard,
+            EffortName::Thorough => Self::Thorough,
+        }
+    }
+}
+
+pub(super) fn run(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::List {
+            presets: Some(model),
+            json,
+        } => presets::list(&model, json),
+        Command::List {
+            presets: None,
+            json,
+        } => list(json),
+        Command::Show { name, json } => show(&name, json),
+        Command::Eval { spec, wi, wo, json } => eval(&spec, wi, wo, json),
+        Command::Info { file, json } => info::run(&file, json),
+        Command::Convert(arguments) => convert::run(*arguments),
+        Command::Check { spec, effort, json } => check(&spec, effort.into(), json),
+    }
+}
+
+fn list(json: bool) -> Result<(), Failure> {
+    if json {
+        let all: Vec<_> = registry::models().iter().map(in_json).collect();
+        return print_json(&all);
+    }
+    let width = registry::models()
+        .iter()
+        .map(|m| m.name.len())
+        .max()
+        .unwrap_or(0);
+    let mut text = String::new();
+    for model in registry::models() {
+        text += &format!("{:width$}  {}\n", model.name, model.summary);
+        for alias in model.aliases {
+            let preset: Vec<String> = alias
+                .preset
+                .iter()
+                .map(|(k, v)| format!("{k}={v}"))
+                .collect();
+            let meaning = match preset.is_empty() {
+                true => String::new(),
+                false => format!(": {}", preset.join(",")),
+            };
+            text += &format!("{:width$}  also {}{meaning}\n", "", alias.name);
+        }
+        for line in presets::counted(model) {
+            text += &format!("{:width$}  {line}\n", "");
+        }
+    }
+    print(&text)
+}
+
+fn show(name: &str, json: bool) -> Result<(), Failure> {
+    let whole = ModelSpec::parse(name)?;
+    // A preset may stand for a sum: the model that was named is a part of it.
+    let named = name.split(['@', ':', '(']).next().unwrap_or(name);
+    let spec = whole.part(named.trim()).unwrap_or(&whole);
+    let model = spec.info()?;
+    if json {
+        return print_json(&in_json(model));
+    }
+    let declared = whole.declares()?;
+    let mut text = format!(
+        "{}\n\n{}\n",
+        wrapped(&format!("{}: {}", model.name, model.summary), 2),
+        wrapped(&format!("Source: {}", model.paper), 2)
+    );
+    if !model.parameters.is_empty() {
+        text += "\nParameters\n";
+    }
+    let width = model
+        .parameters
+        .iter()
+        .map(|p| p.name.len())
+        .max()
+        .unwrap_or(0);
+    for parameter in model.parameters {
+        let given = spec.values.contains_key(parameter.name);
+        let value = match spec.value(parameter.name) {
+            Some(value) if given => format!("here {value}"),
+            Some(value) => format!("default {value}"),
+            None => "no default".into(),
+        };
+        for (first, line) in [
+            (parameter.name, parameter.meaning),
+            ("", &format!("{}; {value}", parameter.expected())),
+        ] {
+            let line = format!("  {first:width$}  {line}");
+            text += &format!("{}\n", wrapped(&line, width + 4));
+        }
+    }
+    if name.contains('@') {
+        text += &format!("\n{}\n", wrapped(&presets::explained(name, &whole), 2));
+    } else {
+        let counted = presets::counted(model);
+        if !counted.is_empty() {
+            text += "\nPresets\n";
+        }
+        for line in counted {
+            text += &format!("{}\n", wrapped(&format!("  {line}"), 4));
+        }
+    }
+    text += "\nDeclared\n";
+    for (holds, property) in [
+        (declared.reciprocal, "reciprocal"),
+        (declared.energy_conserving, "energy-conserving"),
+        (declared.isotropic, "isotropic"),
+    ] {
+        text += &format!("  {}{property}\n", if holds { "" } else { "not " });
+    }
+    text += &format!("\nCheck it: gonio brdf check {name}\n");
+    print(&text)
+}
+
+/// Columns that text for people takes at most.
+pub(super) const COLUMNS: usize = 80;
+
+/// `text` in lines of at most 80 columns, broken at spaces; the second and later ones are indented.
+pub(super) fn wrapped(text: &str, indent: usize) -> String {
+    let start = text.len() - text.trim_start().len();
+    let mut lines = text[..start].to_owned();
+    let mut column = start;
+    for (i, word) in text[start..].split(' ').enumerate() {
+        let length = word.chars().count();
+        if i > 0 && column > indent && column + 1 + length > COLUMNS {
+            lines.truncate(lines.trim_end().len());
+            lines += "\n";
+            lines += &" ".repeat(indent);
+            column = indent;
+        } else if i > 0 {
+            lines.push(' ');
+            column += 1;
+        }
+        lines += word;
+        column += length;
+    }
+    lines
+}
+
+fn in_json(model: &ModelInfo) -> serde_json::Value {
+    let declared = ModelSpec::new(model.name)
+        .map(|spec| (model.declares)(&spec))
+        .ok();
+    json!({
+        "name": model.name,
+        "summary": model.summary,
+        "paper": model.paper,
+        "aliases": model.aliases.iter().map(|a| a.name).collect::<Vec<_>>(),
+        "parameters": model.parameters.iter().map(|p| json!({
+            "name": p.name,
+            "expected": p.expected(),
+            "default": p.default_value().map(|v| v.to_string()),
+            "meaning": p.meaning,
+        })).collect::<Vec<_>>(),
+        "presets": presets::in_json(&presets::sets_of(model)),
+        "declares": declared.map(|d| json!({
+            "reciprocal": d.reciprocal,
+            "energy_conserving": d.energy_conserving,
+            "isotropic": d.isotropic,
+        })),
+    })
+}
+
+fn eval(text: &str, wi: Angles, wo: Angles, json: bool) -> Result<(), Failure> {
+    let spec = ModelSpec::parse(text)?;
+    let model: Model<f64, 3> = spec.build()?;
+    for line in model.warnings() {
+        warn(&line);
+    }
+    let (i, o) = (wi.direction(), wo.direction());
+    let f = model.eval(i, o);
+    let f_cos = model.eval_cos(i, o);
+    let pdf = model.pdf(i, o);
+    if json {
+        return print_json(&json!({
+            "model": spec.to_string(),
+            "wi_deg": [wi.theta_deg, wi.phi_deg],
+            "wo_deg": [wo.theta_deg, wo.phi_deg],
+            "f_per_sr": f,
+            "f_cos_per_sr": f_cos,
+            "pdf_per_sr": pdf,
+        }));
+    }
+    let colour = |c: [f64; 3]| {
+        if c[0] == c[1] && c[1] == c[2] {
+            significant(c[0])
+        } else {
+            let [r, g, b] = c.map(significant);
+            format!("{r}  {g}  {b}  (red, green, blue)")
+        }
+    };
+    let mut words = format!(
+        "{spec}\n  wi  θ = {}°, φ = {}°\n  wo  θ = {}°, φ = {}°\n  f            {} sr⁻¹\n  f · cosθi    {} sr⁻¹\n  \
+         pdf(wi | wo) {} sr⁻¹\n",
+        wi.theta_deg,
+        wi.phi_deg,
+        wo.theta_deg,
+        wo.phi_deg,
+        colour(f),
+        colour(f_cos),
+        significant(pdf),
+    );
+    if model.is_delta() {
+        words += "  all its light is in a Dirac delta, whose value at a pair of directions is 0\n";
+    }
+    print(&words)
+}
+
+fn check(text: &str, effort: Effort, json: bool) -> Result<(), Failure> {
+    let specs = if text == "all" {
+        gonio_brdf::showcase()
+    } else {
+        vec![ModelSpec::parse(text)?]
+    };
+    let bar = ProgressBar::new(specs.len() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:18.cyan/dim} {pos}/{len} {wide_msg}") {
+        bar.set_style(style.progress_chars("━━─"));
+    }
+    let mut reports: Vec<Report> = Vec::new();
+    for spec in &specs {
+        if spec.reads_files() {
+            let model: Model<f32, 3> = spec.build()?;
+            for line in model.warnings() {
+                bar.suspend(|| warn(&line));
+            }
+        }
+        bar.set_message(spec.to_string());
+        bar.tick();
+        let report = gonio_brdf::check(spec, effort)?;
+        if !json {
+            bar.suspend(|| print(&format!("{report}\n\n")))?;
+        }
+        reports.push(report);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    if json {
+        print_json(&reports)?;
+    }
+    judged(&reports)?;
+    if !json && reports.len() > 1 {
+        print(&format!("{} reflection functions passed", reports.len()))?;
+    }
+    Ok(())
+}
+
+/// Fails if a report says that its subject is not as declared.
+fn judged(reports: &[Report]) -> Result<(), Failure> {
+    let failed: Vec<&str> = reports
+        .iter()
+        .filter(|r| !r.passed())
+        .map(|r| r.subject.as_str())
+        .collect();
+    if failed.is_empty() {
+        return Ok(());
+    }
+    Err(
+        Failure::verification(format!("not as declared: {}", failed.join(", "))).with_help(
+            "each property that failed is shown above with the directions it is worst for",
+        ),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gonio_num::Vec3;
+    use gonio_verify::{Expectation, Subject};
+
+    /// No model of the registry is other than it declares, so a closure is: a diffuse surface of albedo 2.
+    #[test]
+    fn a_verdict_that_fails_exits_with_1() {
+        let report = |albedo: f64| {
+            let eval = |wi: Vec3<f64>, wo: Vec3<f64>| match wi.z > 0.0 && wo.z > 0.0 {
+                true => [albedo / std::f64::consts::PI; 3],
+                false => [0.0; 3],
+            };
+            let subject = Subject::new("diffuse", &eval);
+            gonio_verify::check(
+                &subject,
+                &Expectation::default(),
+                Effort::Quick,
+                "exit code",
+            )
+        };
+        assert_eq!(judged(&[report(0.5)]), Ok(()));
+        let failure = judged(&[report(0.5), report(2.0)]).unwrap_err();
+        assert_eq!(failure.code(), 1);
+    }
+
+    #[test]
+    fn long_lines_are_broken_at_spaces() {
+        let text = wrapped(&"four ".repeat(40), 3);
+        assert!(text.lines().count() > 2);
+        for (i, line) in text.lines().enumerate() {
+            assert!(line.chars().count() <= COLUMNS, "{line}");
+            assert_eq!(line.starts_with("   four"), i > 0);
+        }
+        assert_eq!(wrapped("  name   meaning", 8), "  name   meaning");
+        assert_eq!(wrapped("", 2), "");
+        let long = "x".repeat(100);
+        assert_eq!(wrapped(&long, 2), long);
+    }
+}
