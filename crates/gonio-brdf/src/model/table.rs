@@ -1,6 +1,6 @@
 //! A measured table (T19).
 
-use crate::measured::{self, LoadOptions, Measured, Missing, Repair, Select, Side};
+use crate::measured::{AdaptiveTable, self, LoadOptions, Measured, Missing, Repair, Select, Side};
 use crate::part::colour::{cast, mean, mul};
 use crate::{Brdf, BrdfError, Declares, Kind, ModelInfo, ModelSpec, Number, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
@@ -168,6 +168,12 @@ impl<R: Number, const N: usize> Brdf<R, N> for Table<R, N> {
     }
 
     #[inline(always)]
+    fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+        let (f, pdf) = self.data.eval_and_pdf(wi, wo);
+        (mul(self.scale, super::components(f)), pdf)
+    }
+
+    #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
         self.sample_of(self.data.sample(wo, u), wo)
     }
@@ -180,5 +186,13 @@ impl<R: Number, const N: usize> Brdf<R, N> for Table<R, N> {
     #[inline(always)]
     fn transmits(&self) -> bool {
         self.data.transmits()
+    }
+}
+
+impl<const N: usize> Table<f32, N> {
+    /// The table, if it has batches of its own for the colours that are asked for, and what it is multiplied by.
+    pub(crate) fn batched(&self) -> Option<(&AdaptiveTable, [f32; 3])> {
+        let all = self.data.adaptive_alone()?;
+        Some((all, *self.scale.first_chunk().filter(|_| N == 3)?))
     }
 }

@@ -1,4 +1,4 @@
-//! Evaluating and sampling [`Adaptive`] for many directions at once.
+//! Evaluating and sampling [`AdaptiveTable`] for many directions at once.
 //!
 //! Directions go in blocks through the steps of an evaluation: each step is a loop of its own over lanes, and what lies between
 //! two steps is in arrays that stay in the cache. So a processor has many look-ups in flight, where a chain of them for one group
@@ -8,8 +8,9 @@
 //! A step is handed over by reference. By value it would be copied in larger pieces than it was written in, for which a processor
 //! waits until everything before it is in memory: the results of the last block.
 
-use super::Adaptive;
+use super::AdaptiveTable;
 use super::block::{BLOCK, Block, Indices, Part, Row, load, store};
+use super::geometry::Geometry;
 use super::warp::Warp;
 use crate::Sample;
 use crate::batch::{Directions, Samples};
@@ -21,7 +22,7 @@ use std::ops::Range;
 
 /// Half vectors, and the places of viewers among the slices.
 struct Place<'a> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     wi: Part<'a>,
     wo: Part<'a>,
     block: &'a mut Block,
@@ -34,7 +35,7 @@ impl Kernel for &mut Place<'_> {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
             let (wi, wo) = (self.wi.load::<N>(group), self.wo.load::<N>(group));
-            let place = self.all.place(wi, wo);
+            let place = self.all.geometry.place(wi, wo);
             for k in 0..2 {
                 store(place.half[k], &mut block.half[k], group);
                 store(place.viewer[k], &mut block.viewer[k], group);
@@ -49,7 +50,7 @@ impl Kernel for &mut Place<'_> {
 
 /// Where half vectors are drawn from, and the density of visible normals.
 struct Invert<'a, const C: usize> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     block: &'a mut Block,
 }
 
@@ -59,9 +60,9 @@ impl<const C: usize> Kernel for &mut Invert<'_, C> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let blend = self.all.slices.blend::<Lanes<N>, C>(block.at.load(group));
+            let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
             let half = [load(&block.half[0], group), load(&block.half[1], group)];
-            let ([x, y], visible) = self.all.vndf.invert(half, &blend);
+            let ([x, y], visible) = self.all.geometry.vndf.invert(half, &blend);
             store(x, &mut block.point[0], group);
             store(y, &mut block.point[1], group);
             store(visible, &mut block.visible, group);
@@ -71,7 +72,7 @@ impl<const C: usize> Kernel for &mut Invert<'_, C> {
 
 /// Colours, and the density of luminance.
 struct Colour<'a, const C: usize> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     block: &'a mut Block,
 }
 
@@ -81,7 +82,7 @@ impl<const C: usize> Kernel for &mut Colour<'_, C> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let blend = self.all.slices.blend::<Lanes<N>, C>(block.at.load(group));
+            let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
             let p = [load(&block.point[0], group), load(&block.point[1], group)];
             let [r, g, b, luminance] = self.all.colours.at(p, &blend);
             store(r, &mut block.f[0], group);
@@ -94,7 +95,7 @@ impl<const C: usize> Kernel for &mut Colour<'_, C> {
 
 /// The density of luminance alone.
 struct Luminance<'a, const C: usize> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     block: &'a mut Block,
 }
 
@@ -104,7 +105,7 @@ impl<const C: usize> Kernel for &mut Luminance<'_, C> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let blend = self.all.slices.blend::<Lanes<N>, C>(block.at.load(group));
+            let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
             let p = [load(&block.point[0], group), load(&block.point[1], group)];
             let luminance = self.all.colours.density(p, &blend);
             store(luminance, &mut block.luminance, group);
@@ -114,7 +115,7 @@ impl<const C: usize> Kernel for &mut Luminance<'_, C> {
 
 /// f from colours, times a factor.
 struct Shade<'a> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     factor: [f32; 3],
     block: &'a mut Block,
 }
@@ -126,7 +127,7 @@ impl Kernel for &mut Shade<'_> {
         let block = &mut *self.block;
         let [x, y, z] = self.factor.map(Lanes::<N>::splat);
         for group in 0..block.groups(N) {
-            let scale = self.all.scale(
+            let scale = self.all.geometry.scale(
                 load::<N>(&block.cos_i, group),
                 load(&block.cos_o, group),
                 [load(&block.viewer[0], group), load(&block.viewer[1], group)],
@@ -137,7 +138,7 @@ impl Kernel for &mut Shade<'_> {
                 load(&block.f[1], group),
                 load(&block.f[2], group),
             ];
-            let [r, g, b] = Adaptive::shade(scale, rgb);
+            let [r, g, b] = Geometry::shade(scale, rgb);
             store(x * r, &mut block.f[0], group);
             store(y * g, &mut block.f[1], group);
             store(z * b, &mut block.f[2], group);
@@ -156,7 +157,7 @@ impl Kernel for &mut Density<'_> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let pdf = Adaptive::density(
+            let pdf = Geometry::density(
                 load::<N>(&block.cos_i, group),
                 load(&block.cos_o, group),
                 load(&block.visible, group),
@@ -170,7 +171,7 @@ impl Kernel for &mut Density<'_> {
 
 /// The places of viewers among the slices.
 struct FindSlices<'a> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     wo: Part<'a>,
     block: &'a mut Block,
 }
@@ -180,7 +181,7 @@ impl Kernel for &mut FindSlices<'_> {
     #[inline(always)]
     fn run<const N: usize>(self) {
         for group in 0..self.block.groups(N) {
-            let at = self.all.slices_of(self.wo.load::<N>(group));
+            let at = self.all.geometry.slices_of(self.wo.load::<N>(group));
             self.block.at.store(at, group);
         }
     }
@@ -188,7 +189,7 @@ impl Kernel for &mut FindSlices<'_> {
 
 /// The rows of drawn points. Each step of the search is made for all directions before the next: their look-ups overlap.
 struct FindRow<'a, const C: usize> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     warp: &'a Warp,
     block: &'a mut Block,
 }
@@ -202,7 +203,7 @@ impl<const C: usize> Kernel for &mut FindRow<'_, C> {
         let mut count = self.warp.row_steps();
         while count > 1 {
             for group in 0..block.groups(N) {
-                let blend = self.all.slices.blend::<Lanes<N>, C>(block.at.load(group));
+                let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
                 let y = load(&block.point[1], group);
                 let row = block.row.load(group);
                 let row = self.warp.row_step(y, row, count / 2, &blend);
@@ -215,7 +216,7 @@ impl<const C: usize> Kernel for &mut FindRow<'_, C> {
 
 /// Where drawn points lie between rows, and what was drawn along them as a sum.
 struct EndRow<'a, const C: usize> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     warp: &'a Warp,
     block: &'a mut Block,
 }
@@ -226,7 +227,7 @@ impl<const C: usize> Kernel for &mut EndRow<'_, C> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let blend = self.all.slices.blend::<Lanes<N>, C>(block.at.load(group));
+            let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
             let (x, y) = (load(&block.point[0], group), load(&block.point[1], group));
             let [ty, along] = self.warp.row_end(x, y, block.row.load(group), &blend);
             store(ty, &mut block.between_rows, group);
@@ -237,7 +238,7 @@ impl<const C: usize> Kernel for &mut EndRow<'_, C> {
 
 /// The columns of drawn points, as [`FindRow`].
 struct FindColumn<'a, const C: usize> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     warp: &'a Warp,
     block: &'a mut Block,
 }
@@ -251,7 +252,7 @@ impl<const C: usize> Kernel for &mut FindColumn<'_, C> {
         let mut count = self.warp.column_steps();
         while count > 1 {
             for group in 0..block.groups(N) {
-                let blend = self.all.slices.blend::<Lanes<N>, C>(block.at.load(group));
+                let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
                 let (x, ty) = (
                     load(&block.along_row, group),
                     load(&block.between_rows, group),
@@ -267,7 +268,7 @@ impl<const C: usize> Kernel for &mut FindColumn<'_, C> {
 
 /// Drawn points.
 struct EndColumn<'a, const C: usize> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     warp: &'a Warp,
     block: &'a mut Block,
 }
@@ -278,7 +279,7 @@ impl<const C: usize> Kernel for &mut EndColumn<'_, C> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let blend = self.all.slices.blend::<Lanes<N>, C>(block.at.load(group));
+            let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
             let (x, ty) = (
                 load(&block.along_row, group),
                 load(&block.between_rows, group),
@@ -293,7 +294,7 @@ impl<const C: usize> Kernel for &mut EndColumn<'_, C> {
 
 /// Directions mirrored about drawn half vectors.
 struct Reflect<'a> {
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     wo: Part<'a>,
     wi: &'a mut [Row; 3],
     block: &'a Block,
@@ -306,7 +307,7 @@ impl Kernel for &mut Reflect<'_> {
         for group in 0..self.block.groups(N) {
             let point = &self.block.point;
             let p = [load(&point[0], group), load(&point[1], group)];
-            let wi = self.all.reflect(self.wo.load::<N>(group), p).to_array();
+            let wi = self.all.geometry.reflect(self.wo.load::<N>(group), p).to_array();
             for k in 0..3 {
                 store(wi[k], &mut self.wi[k], group);
             }
@@ -359,7 +360,7 @@ enum Ask {
 /// Evaluations with one representation of the slices: `C` is 1 where there is one azimuth, otherwise 2.
 struct Batch<'a, const C: usize> {
     set: InstructionSet,
-    all: &'a Adaptive,
+    all: &'a AdaptiveTable,
     factor: [f32; 3],
 }
 
@@ -394,8 +395,8 @@ impl<const C: usize> Batch<'_, C> {
     fn sample(&self, wo: Part<'_>, wi: &mut [Row; 3], block: &mut Block) {
         let (set, all) = (self.set, self.all);
         dispatch_on(set, &mut FindSlices { all, wo, block });
-        self.draw(&all.luminance, block);
-        self.draw(&all.vndf, block);
+        self.draw(&all.geometry.luminance, block);
+        self.draw(&all.geometry.vndf, block);
         dispatch_on(set, &mut Reflect { all, wo, wi, block });
         let drawn = Directions {
             x: &wi[0].0,
@@ -415,7 +416,7 @@ fn blocks(length: usize) -> impl Iterator<Item = Range<usize>> {
         .map(move |at| at..length.min(at + BLOCK))
 }
 
-impl Adaptive {
+impl AdaptiveTable {
     /// f times `factor` for each pair of directions; see [`batch::eval`](crate::batch::eval).
     pub(crate) fn eval_batch(
         &self,
@@ -478,7 +479,7 @@ impl Adaptive {
                 all: &wo,
                 at: here.start,
             };
-            match self.slices.phi.len() {
+            match self.geometry.slices.phi.len() {
                 1 => self.batch::<1>(set, factor).sample(wo, &mut wi, &mut block),
                 _ => self.batch::<2>(set, factor).sample(wo, &mut wi, &mut block),
             }
@@ -499,7 +500,7 @@ impl Adaptive {
         [wi, wo]: [Part<'_>; 2],
         block: &mut Block,
     ) {
-        match self.slices.phi.len() {
+        match self.geometry.slices.phi.len() {
             1 => self.batch::<1>(set, factor).evaluate(ask, wi, wo, block),
             _ => self.batch::<2>(set, factor).evaluate(ask, wi, wo, block),
         }

@@ -14,14 +14,14 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// From `width`×`height` values, row by row. A single row holds everywhere.
+    /// From `width`×`height` values, row by row, of which negative ones count as 0. A single row holds everywhere.
     pub fn new(values: &[f32], width: usize, height: usize) -> Self {
         let row = |j: usize| &values[j.min(height - 1) * width..][..width];
         let height = height.max(2);
         let mut cells = Vec::with_capacity(4 * (width - 1) * (height - 1));
         for j in 0..height - 1 {
             for (low, high) in row(j).windows(2).zip(row(j + 1).windows(2)) {
-                cells.extend([low[0], low[1], high[0], high[1]]);
+                cells.extend([low[0], low[1], high[0], high[1]].map(|v| v.max(0.0)));
             }
         }
         Self {

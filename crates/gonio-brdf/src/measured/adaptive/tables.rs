@@ -1,61 +1,55 @@
-//! [`Tables`], the content of a `.bsdf` file.
+//! [`Tables`], what directions an adaptive table's values stand for.
 
-use super::spectra::Spectra;
-use crate::measured::file::Fault;
-use crate::measured::tensor_file::dimensions_of;
+use super::super::file::Fault;
+use super::super::tensor_file::dimensions_of;
+use super::super::values::Values;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Nodes along an axis that are believed.
 const MOST_NODES: usize = 8192;
 /// Directions of the viewer that are believed, along θ or φ.
 const MOST_DIRECTIONS: usize = 1024;
-/// Numbers of the largest table in memory: addresses have 32 bits.
-const MOST_NUMBERS: usize = 1 << 30;
+/// Numbers of a table that is made ready in memory. Ready it has eight times as many, and addresses have 32 bits.
+pub(super) const MOST_NUMBERS: usize = 1 << 26;
 
 /// One or more functions over the unit square, bilinear between `width`×`height` nodes that stand at its edges too.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
+pub struct Nodes {
     /// Nodes along the first coordinate.
     pub width: usize,
     /// Nodes along the second coordinate.
     pub height: usize,
     /// Values, row by row, function by function.
-    pub values: Vec<f32>,
+    pub values: Values,
 }
 
-impl Grid {
-    /// How many functions.
-    pub fn count(&self) -> usize {
-        self.values.len() / (self.width * self.height).max(1)
+impl Nodes {
+    /// Nodes of one function.
+    pub fn size(&self) -> usize {
+        self.width * self.height
     }
 }
 
-/// The content of a `.bsdf` file: what [`Adaptive`](super::Adaptive) is made of, and what is written.
+/// What directions an adaptive table's values stand for.
 ///
 /// Directions on the unit square: the first coordinate is √(2θ/π), the second φ/2π + ½. "Slice" is a direction of the viewer: each
-/// `phi_i` with each `theta_i`, the latter varying faster. The viewer is the direction that the file calls "incident".
-#[derive(Debug, Clone)]
+/// `phi_i` with each `theta_i`, the latter varying faster. The viewer is the direction that files call "incident".
+#[derive(Debug, Clone, PartialEq)]
 pub struct Tables {
-    /// What was measured.
-    pub description: String,
-    /// Azimuths of the viewer, increasing, in radians. One or two: the material is isotropic, and φ of half vectors is counted from the
-    /// viewer's. More: they begin at −π and span 2π, or a half or a quarter of it, which the material's symmetry repeats.
+    /// Azimuths of the viewer, increasing, in radians. One or two: φ of half vectors is counted from the viewer's; one: the material is
+    /// isotropic. More: they begin at −π and span 2π, or a half or a quarter of it, which the material's symmetry repeats.
     pub phi_i: Vec<f32>,
     /// Elevations of the viewer from the normal, increasing, within [0, π/2], in radians.
     pub theta_i: Vec<f32>,
     /// Density D of microfacet normals, sr⁻¹, over directions.
-    pub ndf: Grid,
+    pub ndf: Nodes,
     /// Projected area σ of the microfacets towards a direction, over directions.
-    pub sigma: Grid,
+    pub sigma: Nodes,
     /// Density of visible normals, for each slice, over directions; in any unit.
-    pub vndf: Grid,
-    /// Luminance of the colours for each slice, over the numbers that visible normals are drawn from; in any unit.
-    pub luminance: Grid,
-    /// Red, green and blue for each slice, over the same numbers as `luminance`. Linear, with the primaries and the white of sRGB.
-    pub rgb: Option<Grid>,
-    /// The same for wavelengths.
-    pub spectra: Option<Spectra>,
-    /// Whether colours and spectra are f·cosθi · 4σ/D, else f·cosθi.
+    pub vndf: Nodes,
+    /// Luminance of the values for each slice, over the numbers that visible normals are drawn from; in any unit.
+    pub luminance: Nodes,
+    /// Whether values are f·cosθi · 4σ/D, else f·cosθi.
     pub jacobian: bool,
 }
 
@@ -65,7 +59,7 @@ impl Tables {
         self.phi_i.len() * self.theta_i.len()
     }
 
-    /// How often the material's symmetry repeats the measured azimuths in a turn; 0 if it is isotropic.
+    /// How often the material's symmetry repeats the measured azimuths in a turn; 0 if azimuths are counted from the viewer's.
     pub(super) fn symmetry(&self) -> u32 {
         match self.phi_i.as_slice() {
             [first, _, .., last] => (TAU / f64::from(last - first)).round() as u32,
@@ -73,20 +67,17 @@ impl Tables {
         }
     }
 
-    /// Everything that [`Adaptive`](super::Adaptive) relies on.
+    /// Everything that evaluating relies on.
     pub(super) fn check(&self) -> Result<(), Fault> {
         self.check_directions()?;
         let slices = self.slices();
-        check_grid("ndf", &self.ndf, 1)?;
-        check_grid("sigma", &self.sigma, 1)?;
-        check_grid("vndf", &self.vndf, slices)?;
-        check_grid("luminance", &self.luminance, slices)?;
-        for slice in 0..slices {
-            let size = self.vndf.width * self.vndf.height;
-            if self.vndf.values[slice * size..][..size]
-                .iter()
-                .all(|v| *v <= 0.0)
-            {
+        // A single row holds for every azimuth.
+        check_nodes("ndf", &self.ndf, 1, 1)?;
+        check_nodes("sigma", &self.sigma, 1, 1)?;
+        check_nodes("vndf", &self.vndf, slices, 2)?;
+        check_nodes("luminance", &self.luminance, slices, 2)?;
+        for (slice, values) in self.vndf.values.chunks(self.vndf.size()).enumerate() {
+            if values.iter().all(|v| *v <= 0.0) {
                 return Err(Fault::new(
                     format!("field `vndf`, slice {slice}"),
                     "no positive value",
@@ -97,30 +88,6 @@ impl Tables {
         if self.symmetry() == 0 {
             check_rows_agree(&self.sigma)?;
         }
-        let (width, height) = (self.luminance.width, self.luminance.height);
-        let same_size = |name: &str, w: usize, h: usize| match (w, h) == (width, height) {
-            true => Ok(()),
-            false => Err(Fault::new(
-                format!("field `{name}`"),
-                format!("{h}×{w} nodes"),
-                format!("{height}×{width}, as `luminance` has"),
-            )),
-        };
-        if let Some(rgb) = &self.rgb {
-            check_grid("rgb", rgb, 3 * slices)?;
-            same_size("rgb", rgb.width, rgb.height)?;
-        }
-        if let Some(spectra) = &self.spectra {
-            spectra.check(slices)?;
-            same_size("spectra", spectra.width, spectra.height)?;
-        }
-        if self.rgb.is_none() && self.spectra.is_none() {
-            return Err(Fault::new(
-                "fields",
-                "neither `rgb` nor `spectra`",
-                "one of them",
-            ));
-        }
         Ok(())
     }
 
@@ -128,12 +95,8 @@ impl Tables {
         for (name, angles) in [("theta_i", &self.theta_i), ("phi_i", &self.phi_i)] {
             let place = format!("field `{name}`");
             if !(1..=MOST_DIRECTIONS).contains(&angles.len()) {
-                let expected = format!("1 to {MOST_DIRECTIONS}");
-                return Err(Fault::new(
-                    place,
-                    format!("{} angles", angles.len()),
-                    expected,
-                ));
+                let found = format!("{} angles", angles.len());
+                return Err(Fault::new(place, found, format!("1 to {MOST_DIRECTIONS}")));
             }
             check_finite(name, angles)?;
             if let Some(k) = angles.windows(2).position(|a| a[0] >= a[1]) {
@@ -166,34 +129,45 @@ impl Tables {
     }
 }
 
-fn check_grid(name: &str, grid: &Grid, count: usize) -> Result<(), Fault> {
+/// Whether a table of this size can be made ready; `least` is the smallest height.
+pub(super) fn check_size(
+    name: &str,
+    [width, height, count]: [usize; 3],
+    least: usize,
+) -> Result<(), Fault> {
     let place = format!("field `{name}`");
-    let (w, h) = (grid.width, grid.height);
-    // A single row holds for every azimuth.
-    let least = if count == 1 { 1 } else { 2 };
-    if !(2..=MOST_NODES).contains(&w) || !(least..=MOST_NODES).contains(&h) {
+    if !(2..=MOST_NODES).contains(&width) || !(least..=MOST_NODES).contains(&height) {
         let expected = format!("{least}×2 to {MOST_NODES}×{MOST_NODES}");
-        return Err(Fault::new(place, format!("{h}×{w} nodes"), expected));
-    }
-    if grid.values.len() > MOST_NUMBERS {
-        let expected = format!("at most {MOST_NUMBERS}");
         return Err(Fault::new(
             place,
-            format!("{} values", grid.values.len()),
+            format!("{height}×{width} nodes"),
             expected,
         ));
     }
-    if grid.values.len() != w * h * count {
-        return Err(Fault::new(
+    match (width * height).checked_mul(count) {
+        Some(numbers) if numbers <= MOST_NUMBERS => Ok(()),
+        _ => Err(Fault::new(
             place,
-            format!("{} values", grid.values.len()),
+            format!("{} values", dimensions_of(&[count, height, width])),
+            format!("at most {MOST_NUMBERS}"),
+        )),
+    }
+}
+
+fn check_nodes(name: &str, nodes: &Nodes, count: usize, least: usize) -> Result<(), Fault> {
+    let (w, h) = (nodes.width, nodes.height);
+    check_size(name, [w, h, count], least)?;
+    if nodes.values.len() != w * h * count {
+        return Err(Fault::new(
+            format!("field `{name}`"),
+            format!("{} values", nodes.values.len()),
             format!("{} values", dimensions_of(&[count, h, w])),
         ));
     }
-    check_finite(name, &grid.values)
+    check_finite(name, &nodes.values)
 }
 
-pub(super) fn check_finite(name: &str, values: &[f32]) -> Result<(), Fault> {
+pub(in super::super) fn check_finite(name: &str, values: &[f32]) -> Result<(), Fault> {
     match values.iter().position(|v| !v.is_finite()) {
         None => Ok(()),
         Some(k) => Err(Fault::new(
@@ -204,8 +178,8 @@ pub(super) fn check_finite(name: &str, values: &[f32]) -> Result<(), Fault> {
     }
 }
 
-/// σ of an isotropic material is the same in every azimuth.
-fn check_rows_agree(sigma: &Grid) -> Result<(), Fault> {
+/// Where azimuths are counted from the viewer's, σ is the same in every azimuth.
+fn check_rows_agree(sigma: &Nodes) -> Result<(), Fault> {
     let (first, rest) = sigma.values.split_at(sigma.width);
     for row in rest.chunks_exact(sigma.width) {
         for (a, b) in first.iter().zip(row) {

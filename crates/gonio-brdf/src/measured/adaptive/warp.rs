@@ -41,7 +41,7 @@ impl Sums {
         let along_row = |row: &[f32]| -> Vec<f64> {
             let mut sum = 0.0;
             let steps = row.windows(2).map(|p| {
-                sum += trapezoid(p[0].into(), p[1].into());
+                sum += trapezoid(p[0].max(0.0).into(), p[1].max(0.0).into());
                 sum
             });
             std::iter::once(0.0).chain(steps).collect()
@@ -59,7 +59,7 @@ impl Sums {
         }
         let scaled = |v: Vec<f64>| v.into_iter().map(|x| (x / total) as f32).collect();
         Self {
-            density: scaled(table.iter().map(|v| f64::from(*v)).collect()),
+            density: scaled(table.iter().map(|v| f64::from(v.max(0.0))).collect()),
             along: scaled(along),
             below: scaled(below),
             whole: scaled(whole),
@@ -68,7 +68,7 @@ impl Sums {
 }
 
 impl Warp {
-    /// From `width`×`height` values ≥ 0 for each slice, row by row; each slice is scaled to the integral 1. A slice that is 0
+    /// From `width`×`height` values for each slice, row by row, of which negative ones count as 0; each slice is scaled to the integral 1. A slice that is 0
     /// everywhere becomes uniform.
     pub fn new(values: &[f32], width: usize, height: usize, slices: &Slices) -> Self {
         let size = width * height;
