@@ -1,6 +1,7 @@
 //! Evaluations per second: single calls against batches over lanes.
 //!
-//! `cargo bench -p gonio-brdf --bench evaluate`; 4096 pairs of directions, which stay in the cache; one thread.
+//! `cargo bench -p gonio-brdf --bench evaluate`; 4096 pairs of directions, which stay in the cache; one thread. With `GONIO_RGL`, the folder of
+//! files of the RGL database, `table` is one of them.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use gonio_brdf::batch::{self, Directions, Samples};
@@ -34,6 +35,16 @@ fn main() {
     divan::main();
 }
 
+/// The models, and a table if there is one.
+fn models() -> Vec<String> {
+    let mut all: Vec<String> = MODELS.iter().map(|m| m.to_string()).collect();
+    match std::env::var("GONIO_RGL") {
+        Ok(folder) => all.push(format!("table:{folder}/paper_white_rgb.bsdf")),
+        Err(_) => eprintln!("without `table`: GONIO_RGL is not set"),
+    }
+    all
+}
+
 fn model(text: &str) -> Model<f32, 3> {
     ModelSpec::parse(text)
         .and_then(|spec| spec.build())
@@ -61,8 +72,8 @@ fn view(v: &[Vec<f32>; 3]) -> Directions<'_> {
     }
 }
 
-#[divan::bench(args = MODELS)]
-fn eval_single(bencher: Bencher, text: &str) {
+#[divan::bench(args = models())]
+fn eval_single(bencher: Bencher, text: &String) {
     let (model, wi, wo) = (model(text), vectors("wi"), vectors("wo"));
     let mut out = vec![[0.0; 3]; COUNT];
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
@@ -74,8 +85,8 @@ fn eval_single(bencher: Bencher, text: &str) {
     });
 }
 
-#[divan::bench(args = MODELS)]
-fn eval_batch(bencher: Bencher, text: &str) {
+#[divan::bench(args = models())]
+fn eval_batch(bencher: Bencher, text: &String) {
     let (model, wi, wo) = (model(text), split(&vectors("wi")), split(&vectors("wo")));
     let mut out = [0, 1, 2].map(|_| vec![0.0; COUNT]);
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
@@ -85,8 +96,8 @@ fn eval_batch(bencher: Bencher, text: &str) {
     });
 }
 
-#[divan::bench(args = MODELS)]
-fn pdf_single(bencher: Bencher, text: &str) {
+#[divan::bench(args = models())]
+fn pdf_single(bencher: Bencher, text: &String) {
     let (model, wi, wo) = (model(text), vectors("wi"), vectors("wo"));
     let mut out = vec![0.0; COUNT];
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
@@ -98,8 +109,8 @@ fn pdf_single(bencher: Bencher, text: &str) {
     });
 }
 
-#[divan::bench(args = MODELS)]
-fn pdf_batch(bencher: Bencher, text: &str) {
+#[divan::bench(args = models())]
+fn pdf_batch(bencher: Bencher, text: &String) {
     let (model, wi, wo) = (model(text), split(&vectors("wi")), split(&vectors("wo")));
     let mut out = vec![0.0; COUNT];
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
@@ -108,8 +119,8 @@ fn pdf_batch(bencher: Bencher, text: &str) {
     });
 }
 
-#[divan::bench(args = MODELS)]
-fn sample_single(bencher: Bencher, text: &str) {
+#[divan::bench(args = models())]
+fn sample_single(bencher: Bencher, text: &String) {
     let (model, wo, u) = (model(text), vectors("wo"), numbers());
     let mut out = vec![([0.0; 3], 0.0); COUNT];
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
@@ -122,8 +133,8 @@ fn sample_single(bencher: Bencher, text: &str) {
     });
 }
 
-#[divan::bench(args = MODELS)]
-fn sample_batch(bencher: Bencher, text: &str) {
+#[divan::bench(args = models())]
+fn sample_batch(bencher: Bencher, text: &String) {
     let (model, wo, u) = (model(text), split(&vectors("wo")), numbers());
     let mut wi = [0, 1, 2].map(|_| vec![0.0; COUNT]);
     let mut weight = [0, 1, 2].map(|_| vec![0.0; COUNT]);

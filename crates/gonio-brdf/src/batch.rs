@@ -193,7 +193,11 @@ pub fn sample_on<const N: usize>(
 /// The slices of three colour components.
 fn three<T, const N: usize>(slices: [T; N]) -> [T; 3] {
     let mut slices = slices.into_iter();
-    std::array::from_fn(|_| slices.next().expect("invariant: a table with batches has three"))
+    std::array::from_fn(|_| {
+        slices
+            .next()
+            .expect("invariant: a table with batches has three")
+    })
 }
 
 /// The model, of which a compiler knows nothing from one step to the next. Otherwise it makes a loop of its own for every combination

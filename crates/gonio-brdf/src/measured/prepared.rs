@@ -95,9 +95,7 @@ impl Table {
             Data::Grid(grid) => Self::Grid(Box::new(GridTable::new(grid, to_rgb, gamut))),
             Data::Klems(klems) => Self::Klems(Box::new(KlemsTable::new(klems, to_rgb, gamut))),
             Data::TensorTree(tree) => Self::Tree(Box::new(TreeTable::new(tree, to_rgb, gamut)?)),
-            Data::Adaptive(all) => {
-                Self::Adaptive(Box::new(AdaptiveTable::new(all, to_rgb, gamut)))
-            }
+            Data::Adaptive(all) => Self::Adaptive(Box::new(AdaptiveTable::new(all, to_rgb, gamut))),
         })
     }
 }
@@ -305,10 +303,7 @@ impl Measured {
             Some(all) => {
                 let (f, pdf) = all.eval_and_pdf(wi, wo);
                 let both = above(wi, wo);
-                (
-                    only_where::<R, 3>(both, f),
-                    R::select(both, pdf, R::zero()),
-                )
+                (only_where::<R, 3>(both, f), R::select(both, pdf, R::zero()))
             }
             None => (self.eval(wi, wo), self.pdf(wi, wo)),
         }

@@ -1,6 +1,6 @@
 //! A measured table (T19).
 
-use crate::measured::{AdaptiveTable, self, LoadOptions, Measured, Missing, Repair, Select, Side};
+use crate::measured::{self, AdaptiveTable, LoadOptions, Measured, Missing, Repair, Select, Side};
 use crate::part::colour::{cast, mean, mul};
 use crate::{Brdf, BrdfError, Declares, Kind, ModelInfo, ModelSpec, Number, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};

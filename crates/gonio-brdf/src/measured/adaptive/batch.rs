@@ -60,7 +60,11 @@ impl<const C: usize> Kernel for &mut Invert<'_, C> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
+            let blend = self
+                .all
+                .geometry
+                .slices
+                .blend::<Lanes<N>, C>(block.at.load(group));
             let half = [load(&block.half[0], group), load(&block.half[1], group)];
             let ([x, y], visible) = self.all.geometry.vndf.invert(half, &blend);
             store(x, &mut block.point[0], group);
@@ -82,7 +86,11 @@ impl<const C: usize> Kernel for &mut Colour<'_, C> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
+            let blend = self
+                .all
+                .geometry
+                .slices
+                .blend::<Lanes<N>, C>(block.at.load(group));
             let p = [load(&block.point[0], group), load(&block.point[1], group)];
             let [r, g, b, luminance] = self.all.colours.at(p, &blend);
             store(r, &mut block.f[0], group);
@@ -105,7 +113,11 @@ impl<const C: usize> Kernel for &mut Luminance<'_, C> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
+            let blend = self
+                .all
+                .geometry
+                .slices
+                .blend::<Lanes<N>, C>(block.at.load(group));
             let p = [load(&block.point[0], group), load(&block.point[1], group)];
             let luminance = self.all.colours.density(p, &blend);
             store(luminance, &mut block.luminance, group);
@@ -203,7 +215,11 @@ impl<const C: usize> Kernel for &mut FindRow<'_, C> {
         let mut count = self.warp.row_steps();
         while count > 1 {
             for group in 0..block.groups(N) {
-                let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
+                let blend = self
+                    .all
+                    .geometry
+                    .slices
+                    .blend::<Lanes<N>, C>(block.at.load(group));
                 let y = load(&block.point[1], group);
                 let row = block.row.load(group);
                 let row = self.warp.row_step(y, row, count / 2, &blend);
@@ -227,7 +243,11 @@ impl<const C: usize> Kernel for &mut EndRow<'_, C> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
+            let blend = self
+                .all
+                .geometry
+                .slices
+                .blend::<Lanes<N>, C>(block.at.load(group));
             let (x, y) = (load(&block.point[0], group), load(&block.point[1], group));
             let [ty, along] = self.warp.row_end(x, y, block.row.load(group), &blend);
             store(ty, &mut block.between_rows, group);
@@ -252,7 +272,11 @@ impl<const C: usize> Kernel for &mut FindColumn<'_, C> {
         let mut count = self.warp.column_steps();
         while count > 1 {
             for group in 0..block.groups(N) {
-                let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
+                let blend = self
+                    .all
+                    .geometry
+                    .slices
+                    .blend::<Lanes<N>, C>(block.at.load(group));
                 let (x, ty) = (
                     load(&block.along_row, group),
                     load(&block.between_rows, group),
@@ -279,7 +303,11 @@ impl<const C: usize> Kernel for &mut EndColumn<'_, C> {
     fn run<const N: usize>(self) {
         let block = &mut *self.block;
         for group in 0..block.groups(N) {
-            let blend = self.all.geometry.slices.blend::<Lanes<N>, C>(block.at.load(group));
+            let blend = self
+                .all
+                .geometry
+                .slices
+                .blend::<Lanes<N>, C>(block.at.load(group));
             let (x, ty) = (
                 load(&block.along_row, group),
                 load(&block.between_rows, group),
@@ -307,7 +335,11 @@ impl Kernel for &mut Reflect<'_> {
         for group in 0..self.block.groups(N) {
             let point = &self.block.point;
             let p = [load(&point[0], group), load(&point[1], group)];
-            let wi = self.all.geometry.reflect(self.wo.load::<N>(group), p).to_array();
+            let wi = self
+                .all
+                .geometry
+                .reflect(self.wo.load::<N>(group), p)
+                .to_array();
             for k in 0..3 {
                 store(wi[k], &mut self.wi[k], group);
             }

@@ -69,7 +69,10 @@ impl AdaptiveTable {
     }
 
     fn albedo_in<R: Number, const C: usize>(&self, wo: Vec3<R>) -> R {
-        let blend = self.geometry.slices.blend::<R, C>(self.geometry.slices_of(wo));
+        let blend = self
+            .geometry
+            .slices
+            .blend::<R, C>(self.geometry.slices_of(wo));
         let [albedo] = blend.of_slices(&self.albedo, 0, R::Index::splat(0), [0]);
         albedo
     }

@@ -1,6 +1,6 @@
 //! Adaptive tables as fields of a `tensor_file`.
 
-use super::tables::{Nodes, Tables, check_size};
+use super::tables::{Nodes, Tables, check_directions, check_size};
 use crate::measured::file::Fault;
 use crate::measured::input::Input;
 use crate::measured::tensor_file::{Dtype, Field, TensorFile, TensorWriter, dimensions_of};
@@ -17,6 +17,7 @@ impl Fields<'_, '_> {
     pub fn tables(&self) -> Result<Tables, Fault> {
         let theta_i = self.list("theta_i")?;
         let phi_i = self.list("phi_i")?;
+        check_directions(&phi_i, &theta_i)?;
         let slices = [phi_i.len(), theta_i.len()];
         Ok(Tables {
             ndf: self.nodes("ndf", &[])?,

@@ -86,7 +86,6 @@ impl Geometry {
         }
     }
 
-
     /// `wo` moved by the material's symmetry to azimuths that were measured, and the factors for x and y that do it.
     #[inline(always)]
     fn fold<R: Number>(&self, wo: Vec3<R>) -> (Vec3<R>, R, R) {
@@ -174,13 +173,7 @@ impl Geometry {
 
     /// The density per solid angle from those of visible normals and of luminance.
     #[inline(always)]
-    pub fn density<R: Number>(
-        cos_i: R,
-        cos_o: R,
-        visible: R,
-        luminance: R,
-        jacobian: R,
-    ) -> R {
+    pub fn density<R: Number>(cos_i: R, cos_o: R, visible: R, luminance: R, jacobian: R) -> R {
         let above = cos_i.gt(R::zero()) & cos_o.gt(R::zero());
         R::select(above, visible * luminance / jacobian, R::zero())
     }

@@ -20,6 +20,8 @@ mod geometry;
 mod plane;
 mod slices;
 mod tables;
+#[cfg(test)]
+mod tests;
 mod warp;
 
 pub(crate) use evaluate::AdaptiveTable;
@@ -74,11 +76,7 @@ impl Adaptive {
         })
     }
 
-    pub(super) fn checked(
-        tables: Tables,
-        channels: usize,
-        values: Values,
-    ) -> Result<Self, Fault> {
+    pub(super) fn checked(tables: Tables, channels: usize, values: Values) -> Result<Self, Fault> {
         tables.check()?;
         let expected = tables.slices() * channels * tables.luminance.size();
         if expected == 0 || values.len() != expected {

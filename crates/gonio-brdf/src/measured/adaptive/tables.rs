@@ -61,15 +61,12 @@ impl Tables {
 
     /// How often the material's symmetry repeats the measured azimuths in a turn; 0 if azimuths are counted from the viewer's.
     pub(super) fn symmetry(&self) -> u32 {
-        match self.phi_i.as_slice() {
-            [first, _, .., last] => (TAU / f64::from(last - first)).round() as u32,
-            _ => 0,
-        }
+        symmetry(&self.phi_i)
     }
 
     /// Everything that evaluating relies on.
     pub(super) fn check(&self) -> Result<(), Fault> {
-        self.check_directions()?;
+        check_directions(&self.phi_i, &self.theta_i)?;
         let slices = self.slices();
         // A single row holds for every azimuth.
         check_nodes("ndf", &self.ndf, 1, 1)?;
@@ -90,42 +87,50 @@ impl Tables {
         }
         Ok(())
     }
+}
 
-    fn check_directions(&self) -> Result<(), Fault> {
-        for (name, angles) in [("theta_i", &self.theta_i), ("phi_i", &self.phi_i)] {
-            let place = format!("field `{name}`");
-            if !(1..=MOST_DIRECTIONS).contains(&angles.len()) {
-                let found = format!("{} angles", angles.len());
-                return Err(Fault::new(place, found, format!("1 to {MOST_DIRECTIONS}")));
-            }
-            check_finite(name, angles)?;
-            if let Some(k) = angles.windows(2).position(|a| a[0] >= a[1]) {
-                let found = format!("{} after {}", angles[k + 1], angles[k]);
-                return Err(Fault::new(place, found, "increasing angles"));
-            }
+/// Angles of the viewer that increase, within their ranges.
+pub(super) fn check_directions(phi_i: &[f32], theta_i: &[f32]) -> Result<(), Fault> {
+    for (name, angles) in [("theta_i", theta_i), ("phi_i", phi_i)] {
+        let place = format!("field `{name}`");
+        if !(1..=MOST_DIRECTIONS).contains(&angles.len()) {
+            let found = format!("{} angles", angles.len());
+            return Err(Fault::new(place, found, format!("1 to {MOST_DIRECTIONS}")));
         }
-        // Grids end at π/2 rounded to single precision, up or down.
-        let (first, last) = (self.theta_i[0], self.theta_i[self.theta_i.len() - 1]);
-        if first < 0.0 || f64::from(last) > FRAC_PI_2 + 1e-3 {
+        check_finite(name, angles)?;
+        if let Some(k) = angles.windows(2).position(|a| a[0] >= a[1]) {
+            let found = format!("{} after {}", angles[k + 1], angles[k]);
+            return Err(Fault::new(place, found, "increasing angles"));
+        }
+    }
+    // Grids end at π/2 rounded to single precision, up or down.
+    let (first, last) = (theta_i[0], theta_i[theta_i.len() - 1]);
+    if first < 0.0 || f64::from(last) > FRAC_PI_2 + 1e-3 {
+        return Err(Fault::new(
+            "field `theta_i`",
+            format!("angles from {first} to {last}"),
+            "radians from 0 to π/2",
+        ));
+    }
+    if let [first, _, .., last] = phi_i {
+        let parts = symmetry(phi_i);
+        let span = f64::from(last - first) * f64::from(parts);
+        let begins = (f64::from(*first) + PI).abs() < 1e-2;
+        if !(matches!(parts, 1 | 2 | 4) && (span - TAU).abs() < 1e-2 && begins) {
             return Err(Fault::new(
-                "field `theta_i`",
+                "field `phi_i`",
                 format!("angles from {first} to {last}"),
-                "radians from 0 to π/2",
+                "radians from −π over a whole turn, a half or a quarter",
             ));
         }
-        if let [first, _, .., last] = self.phi_i.as_slice() {
-            let parts = self.symmetry();
-            let span = f64::from(last - first) * f64::from(parts);
-            let begins = (f64::from(*first) + PI).abs() < 1e-2;
-            if !(matches!(parts, 1 | 2 | 4) && (span - TAU).abs() < 1e-2 && begins) {
-                return Err(Fault::new(
-                    "field `phi_i`",
-                    format!("angles from {first} to {last}"),
-                    "radians from −π over a whole turn, a half or a quarter",
-                ));
-            }
-        }
-        Ok(())
+    }
+    Ok(())
+}
+
+fn symmetry(phi_i: &[f32]) -> u32 {
+    match phi_i {
+        [first, _, .., last] => (TAU / f64::from(last - first)).round() as u32,
+        _ => 0,
     }
 }
 

@@ -71,7 +71,8 @@ pub fn parse(input: &Input<'_>) -> Result<Measurement, BrdfError> {
     let components = vec![Component::reflection(Data::Adaptive(data))];
     let mut measurement = Measurement::new(components, channels, metadata)
         .map_err(|e| input.error("fields", e.to_string(), "fields that agree"))?;
-    let read = |name: &str| READ.contains(&name) && (name != "rgb" || file.find("spectra").is_none());
+    let read =
+        |name: &str| READ.contains(&name) && (name != "rgb" || file.find("spectra").is_none());
     let unused = file.fields().iter().filter(|f| !read(&f.name));
     measurement.unused = unused.map(|f| format!("field `{}`", f.name)).collect();
     Ok(measurement)
