@@ -5,7 +5,7 @@ Run from the repository root, with `pip install mitsuba==3.9.1 numpy` in the Pyt
 
     python benches/peers/compare_measured.py FOLDER/*.bsdf
 
-Prints, for each file, the largest relative difference |a - b| / max(|a|, |b|, floor) of f·cosθ, of the density, and of samples drawn
+Prints, for each file, the largest relative difference |a - b| / max(|a|, |b|, floor), of colours in their largest component: of f·cosθ, of the density, and of samples drawn
 from the same numbers: the length of the difference of their directions, and weight and density; exits 1 if one is above 1e-4.
 
 Mitsuba computes in single precision, which calls for two allowances. The floor is a tenth of the mean over the hemisphere (of a density:
@@ -56,7 +56,9 @@ def mitsuba(path, rows):
 def difference(a, b, mean=None):
     a, b = np.maximum(a, 0), np.maximum(b, 0)
     floor = FLOOR * (a.mean() if mean is None else mean)
-    return float(np.max(np.abs(a - b) / np.maximum(np.maximum(a, b), floor)))
+    scale = np.maximum(a, b).reshape(len(a), -1).max(axis=1)
+    apart = np.abs(a - b).reshape(len(a), -1).max(axis=1)
+    return float(np.max(apart / np.maximum(scale, floor)))
 
 
 def main():

@@ -25,6 +25,8 @@ struct Place<'a> {
     all: &'a AdaptiveTable,
     wi: Part<'a>,
     wo: Part<'a>,
+    /// Whether more than a density is asked for, which needs the viewers' places on the square.
+    viewer: bool,
     block: &'a mut Block,
 }
 
@@ -38,7 +40,11 @@ impl Kernel for &mut Place<'_> {
             let place = self.all.geometry.place(wi, wo);
             for k in 0..2 {
                 store(place.half[k], &mut block.half[k], group);
-                store(place.viewer[k], &mut block.viewer[k], group);
+            }
+            if self.viewer {
+                for k in 0..2 {
+                    store(place.viewer[k], &mut block.viewer[k], group);
+                }
             }
             store(place.jacobian, &mut block.jacobian, group);
             store(wi.z, &mut block.cos_i, group);
@@ -400,7 +406,17 @@ impl<const C: usize> Batch<'_, C> {
     /// f and the density of a block, as asked.
     fn evaluate(&self, ask: Ask, wi: Part<'_>, wo: Part<'_>, block: &mut Block) {
         let (set, all) = (self.set, self.all);
-        dispatch_on(set, &mut Place { all, wi, wo, block });
+        let viewer = ask != Ask::Pdf;
+        dispatch_on(
+            set,
+            &mut Place {
+                all,
+                wi,
+                wo,
+                viewer,
+                block,
+            },
+        );
         dispatch_on(set, &mut Invert::<C> { all, block });
         if ask == Ask::Pdf {
             dispatch_on(set, &mut Luminance::<C> { all, block });
