@@ -5,8 +5,9 @@ Run from the repository root, with `pip install mitsuba==3.9.1 numpy` in the Pyt
 
     python benches/peers/compare_measured.py FOLDER/*.bsdf
 
-Prints, for each file, the largest relative difference |a - b| / max(|a|, |b|, floor), of colours in their largest component: of f·cosθ, of the density, and of samples drawn
-from the same numbers: the length of the difference of their directions, and weight and density; exits 1 if one is above 1e-4.
+Prints, for each file, the largest relative difference |a - b| / max(|a|, |b|, floor), of colours in their largest component: of
+f·cosθ, of the density, and of samples drawn from the same numbers: the length of the difference of their directions, and weight and
+density; then the share of numbers that draw a direction in both, and of those compared. Exits 1 if a difference is above 1e-4.
 
 Mitsuba computes in single precision, which calls for two allowances. The floor is a tenth of the mean over the hemisphere (of a density:
 1/2π). For a point of the square is found by a sum of up to 128 numbers, whose error is up to 128 · 6e-8 = 8e-6, and values may
@@ -48,7 +49,7 @@ def mitsuba(path, rows):
         si.wi = mi.Vector3f(row[3:6])
         wo = mi.Vector3f(row[0:3])
         values[k] = [*bsdf.eval(context, si, wo), bsdf.pdf(context, si, wo)]
-        sample, weight = bsdf.sample(context, si, 0.5, mi.Point2f(row[10], row[11]))
+        sample, weight = bsdf.sample(context, si, 0.5, mi.Point2f(row[11], row[12]))
         samples[k] = [*sample.wo, *weight, sample.pdf]
     return values, samples
 
@@ -68,8 +69,8 @@ def main():
     for path in sys.argv[1:]:
         rows = gonio(path)
         values, samples = mitsuba(path, rows)
-        drawn = (rows[:, 19] > 0) & (samples[:, 6] > 0) & (samples[:, 2] > 0)
-        half = rows[:, 13:16] + rows[:, 3:6]
+        drawn = (rows[:, 20] > 0) & (samples[:, 6] > 0) & (samples[:, 2] > 0)
+        half = rows[:, 14:17] + rows[:, 3:6]
         half /= np.linalg.norm(half, axis=1)[:, None]
         compared = drawn & (half[:, 2] < NEAR_NORMAL)
         ours, theirs = rows[compared], samples[compared]
@@ -77,9 +78,9 @@ def main():
         all_of = [
             difference(rows[:, 6:9], values[:, :3]),
             difference(rows[:, 9], values[:, 3], uniform),
-            np.linalg.norm(ours[:, 13:16] - theirs[:, :3], axis=1).max(),
-            difference(ours[:, 16:19], theirs[:, 3:6]),
-            difference(ours[:, 19], theirs[:, 6], uniform),
+            np.linalg.norm(ours[:, 14:17] - theirs[:, :3], axis=1).max(),
+            difference(ours[:, 17:20], theirs[:, 3:6]),
+            difference(ours[:, 20], theirs[:, 6], uniform),
         ]
         worst = max(worst, *all_of)
         name = path.rsplit("/", 1)[-1]

@@ -20,6 +20,9 @@ const MODELS: &[&str] = &[
     "ward-duer:normalisation=bounded",
     "ashikhmin-shirley",
     "ashikhmin-premoze",
+    "bagher",
+    "low-microfacet",
+    "low-smooth",
     "sheen-charlie",
     "sheen-ltc",
     "retro-reflective:interreflection=none",
@@ -36,10 +39,10 @@ fn main() {
 }
 
 /// The models, and a table if there is one.
-fn models() -> Vec<String> {
-    let mut all: Vec<String> = MODELS.iter().map(|m| m.to_string()).collect();
+fn models() -> Vec<&'static str> {
+    let mut all = MODELS.to_vec();
     match std::env::var("GONIO_RGL") {
-        Ok(folder) => all.push(format!("table:{folder}/paper_white_rgb.bsdf")),
+        Ok(folder) => all.push(format!("table:{folder}/paper_white_rgb.bsdf").leak()),
         Err(_) => eprintln!("without `table`: GONIO_RGL is not set"),
     }
     all
@@ -73,7 +76,7 @@ fn view(v: &[Vec<f32>; 3]) -> Directions<'_> {
 }
 
 #[divan::bench(args = models())]
-fn eval_single(bencher: Bencher, text: &String) {
+fn eval_single(bencher: Bencher, text: &str) {
     let (model, wi, wo) = (model(text), vectors("wi"), vectors("wo"));
     let mut out = vec![[0.0; 3]; COUNT];
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
@@ -86,7 +89,7 @@ fn eval_single(bencher: Bencher, text: &String) {
 }
 
 #[divan::bench(args = models())]
-fn eval_batch(bencher: Bencher, text: &String) {
+fn eval_batch(bencher: Bencher, text: &str) {
     let (model, wi, wo) = (model(text), split(&vectors("wi")), split(&vectors("wo")));
     let mut out = [0, 1, 2].map(|_| vec![0.0; COUNT]);
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
@@ -97,7 +100,7 @@ fn eval_batch(bencher: Bencher, text: &String) {
 }
 
 #[divan::bench(args = models())]
-fn pdf_single(bencher: Bencher, text: &String) {
+fn pdf_single(bencher: Bencher, text: &str) {
     let (model, wi, wo) = (model(text), vectors("wi"), vectors("wo"));
     let mut out = vec![0.0; COUNT];
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
@@ -110,7 +113,7 @@ fn pdf_single(bencher: Bencher, text: &String) {
 }
 
 #[divan::bench(args = models())]
-fn pdf_batch(bencher: Bencher, text: &String) {
+fn pdf_batch(bencher: Bencher, text: &str) {
     let (model, wi, wo) = (model(text), split(&vectors("wi")), split(&vectors("wo")));
     let mut out = vec![0.0; COUNT];
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
@@ -120,7 +123,7 @@ fn pdf_batch(bencher: Bencher, text: &String) {
 }
 
 #[divan::bench(args = models())]
-fn sample_single(bencher: Bencher, text: &String) {
+fn sample_single(bencher: Bencher, text: &str) {
     let (model, wo, u) = (model(text), vectors("wo"), numbers());
     let mut out = vec![([0.0; 3], 0.0); COUNT];
     bencher.counter(ItemsCount::new(COUNT)).bench_local(|| {
@@ -134,7 +137,7 @@ fn sample_single(bencher: Bencher, text: &String) {
 }
 
 #[divan::bench(args = models())]
-fn sample_batch(bencher: Bencher, text: &String) {
+fn sample_batch(bencher: Bencher, text: &str) {
     let (model, wo, u) = (model(text), split(&vectors("wo")), numbers());
     let mut wi = [0, 1, 2].map(|_| vec![0.0; COUNT]);
     let mut weight = [0, 1, 2].map(|_| vec![0.0; COUNT]);

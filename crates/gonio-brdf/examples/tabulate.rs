@@ -1,16 +1,16 @@
-//! Writes the tables that microfacet models look values up in: Smith's masking where it has no closed form, and directional albedos and
-//! losses for interreflection.
+//! Writes the tables that microfacet models look values up in: Smith's masking where it has no closed form, and directional albedos and losses for
+//! interreflection and layers.
 //!
 //! `cargo run --release -p gonio-brdf --example tabulate -- masking crates/gonio-brdf/src/part/masking.bin`, then the same
-//! with `albedo` and `boundary`, which are computed from the first.
+//! with `albedo`, `boundary` and `gloss`, which are computed from the first.
 
-use gonio_brdf::part::{albedo, boundary_loss, masking_table};
+use gonio_brdf::part::{albedo, boundary_loss, gloss, masking_table};
 use std::io::Write as _;
 
 fn main() -> std::io::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let (Some(what), Some(path)) = (arguments.next(), arguments.next()) else {
-        eprintln!("usage: tabulate masking|albedo|boundary FILE");
+        eprintln!("usage: tabulate masking|albedo|boundary|gloss FILE");
         std::process::exit(2);
     };
     let numbers: Vec<f32> = match what.as_str() {
@@ -25,8 +25,9 @@ fn main() -> std::io::Result<()> {
             .into_iter()
             .flat_map(boundary_loss::tabulate)
             .collect(),
+        "gloss" => gloss::tabulate(),
         other => {
-            eprintln!("unknown table `{other}`: masking, albedo or boundary");
+            eprintln!("unknown table `{other}`: masking, albedo, boundary or gloss");
             std::process::exit(2);
         }
     };

@@ -1,11 +1,12 @@
 //! Many directions at once: the same formulas over lanes, under the widest instruction set of the machine.
 //!
 //! Directions are structures of arrays. Results have the same bits as those of a single call in `f32`, on any machine.
-//! A batch is several times faster than single calls for the closed-form models; `Sum` and `Scaled` dispatch for each
-//! group of lanes, and `Table` reads its memory lane by lane, but for adaptive tables, which have batches of their own.
+//! A batch is several times faster than single calls for the closed-form models. A model made of others has a batch of each part
+//! evaluated for a group of directions at a time, and `Table` reads its memory lane by lane, but for adaptive
+//! tables, which have batches of their own.
 
-use crate::model::{Castable, Visitor};
-use crate::{Brdf, Model};
+use crate::model::{Castable, Composite, Visitor};
+use crate::{Brdf, Model, Sample};
 use gonio_num::dispatch::{InstructionSet, Kernel, dispatch_on};
 use gonio_num::lanes::Lanes;
 use gonio_num::{Real, Vec3};
@@ -220,6 +221,87 @@ impl<T: Batch<N>, const N: usize> Visitor<f32, N> for On<T> {
     fn visit<B: Castable<f32, N>>(self, model: &B) {
         dispatch_on(self.0, Chosen(model, self.1));
     }
+
+    fn visit_composite<C: Composite<f32, N>>(self, model: &C) {
+        let part = |model| Part { set: self.0, model };
+        self.1.run(&model.with(&Group::splat, &part));
+    }
+}
+
+/// Directions that a composite passes to its parts at a time: enough that the choice of the part and of the instruction set costs
+/// little beside the work.
+type Group = Lanes<64>;
+
+/// A part of a composite: each call is a batch of one group.
+struct Part<'a, const N: usize> {
+    set: InstructionSet,
+    model: &'a Model<f32, N>,
+}
+
+fn directions(w: &Vec3<Group>) -> Directions<'_> {
+    Directions {
+        x: &w.x.0,
+        y: &w.y.0,
+        z: &w.z.0,
+    }
+}
+
+impl<const N: usize> Brdf<Group, N> for Part<'_, N> {
+    fn eval(&self, wi: Vec3<Group>, wo: Vec3<Group>) -> [Group; N] {
+        let mut f = [Group::splat(0.0); N];
+        let result = f.each_mut().map(|f| &mut f.0[..]);
+        eval_on(
+            self.set,
+            self.model,
+            directions(&wi),
+            directions(&wo),
+            result,
+        );
+        f
+    }
+
+    fn pdf(&self, wi: Vec3<Group>, wo: Vec3<Group>) -> Group {
+        let mut pdf = Group::splat(0.0);
+        let (wi, wo) = (directions(&wi), directions(&wo));
+        pdf_on(self.set, self.model, wi, wo, &mut pdf.0);
+        pdf
+    }
+
+    fn sample(&self, wo: Vec3<Group>, u: [Group; 3]) -> Sample<Group, N> {
+        let mut s = Sample::<Group, N>::none();
+        let result = Samples {
+            wi: [&mut s.wi.x.0, &mut s.wi.y.0, &mut s.wi.z.0],
+            weight: s.weight.each_mut().map(|w| &mut w.0[..]),
+            pdf: &mut s.pdf.0,
+            delta: &mut s.delta.0,
+        };
+        let u = [&u[0].0[..], &u[1].0, &u[2].0];
+        sample_on(self.set, self.model, directions(&wo), u, result);
+        s
+    }
+
+    fn albedo_estimate(&self, wo: Vec3<Group>) -> Group {
+        let mut result = Group::splat(0.0);
+        let wo = directions(&wo);
+        let work = Estimate {
+            wo,
+            result: &mut result.0,
+        };
+        self.model.visit(On(self.set, work));
+        result
+    }
+
+    fn transmits(&self) -> bool {
+        self.model.transmits()
+    }
+
+    fn relative_ior(&self) -> [Group; N] {
+        self.model.relative_ior().map(Group::splat)
+    }
+
+    fn absorption(&self) -> [Group; N] {
+        self.model.absorption().map(Group::splat)
+    }
 }
 
 /// A batch with its model: a kernel splats the model's numbers over the lanes once.
@@ -266,6 +348,24 @@ impl<const N: usize> Batch<N> for Pdf<'_> {
         while at < self.wo.len() {
             opaque(model)
                 .pdf(self.wi.load(at), self.wo.load(at))
+                .store(&mut self.result[at..]);
+            at += L;
+        }
+    }
+}
+
+struct Estimate<'a> {
+    wo: Directions<'a>,
+    result: &'a mut [f32],
+}
+
+impl<const N: usize> Batch<N> for Estimate<'_> {
+    #[inline(always)]
+    fn run<const L: usize, B: Brdf<Lanes<L>, N>>(self, model: &B) {
+        let mut at = 0;
+        while at < self.wo.len() {
+            opaque(model)
+                .albedo_estimate(self.wo.load(at))
                 .store(&mut self.result[at..]);
             at += L;
         }

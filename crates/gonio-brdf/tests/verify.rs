@@ -55,6 +55,9 @@ fn the_catalogue_away_from_its_defaults() {
         "ashikhmin-shirley:diffuse=1,specular=0.1/0.5/0.9,nu=20,nv=400",
         "ashikhmin-shirley:ior=1.5,scale=0.5,diffuse_term=lambertian",
         "ashikhmin-premoze:diffuse=0.5,specular=0.2,nu=3,nv=30",
+        "bagher:diffuse=0.1,alpha_squared=0.001/0.04/0.5,p=0.2/1/1.9,f0=0.5,f1=0.1/0.3/-0.2",
+        "low-microfacet:diffuse=0,specular=0.5,b=20,c=0.3,ior=3",
+        "low-smooth:diffuse=0.2,specular=2/1/0.1,b=9,c=0.05",
         "sheen-charlie:alpha=0.05,visibility=neubelt",
         "sheen-ltc:roughness=0.1",
         "retro-reflective:metal=silver,alpha_x=0.15,alpha_y=0.4,rotation_deg=30",
@@ -63,6 +66,9 @@ fn the_catalogue_away_from_its_defaults() {
         "blinn-phong@pearl-paint",
         "ward@ngan/black-oxidized-steel",
         "cook-torrance@low-e2/green-fabric",
+        "bagher@alum-bronze",
+        "low-microfacet@nickel",
+        "low-smooth@yellow-plastic",
     ] {
         passes(text);
     }
@@ -106,6 +112,15 @@ fn what_is_declared_costs_and_is_seen() {
             Property::Reciprocity,
         ),
         ("gooch", Property::Reciprocity),
+        ("bagher@white-paint", Property::EnergyConservation),
+        (
+            "low-microfacet:specular=300,diffuse=0",
+            Property::EnergyConservation,
+        ),
+        (
+            "low-smooth:specular=3000,diffuse=0",
+            Property::EnergyConservation,
+        ),
     ] {
         let report = check(&ModelSpec::parse(text).unwrap(), Effort::Quick).unwrap();
         assert!(report.passed(), "{report}");
@@ -141,4 +156,11 @@ fn declarations_follow_the_parameters() {
     assert!(declares("ashikhmin-shirley:diffuse=1,specular=1").energy_conserving);
     assert!(!declares("sheen-ltc").reciprocal && declares("sheen-charlie").reciprocal);
     assert!(declares("retro-reflective:metal=gold").energy_conserving);
+    assert!(!declares("bagher").energy_conserving && declares("bagher").reciprocal);
+    // C = 2: the lobe's bound is A π/(1 + B).
+    assert!(declares("low-smooth:diffuse=0.5,specular=1.7,b=10,c=2").energy_conserving);
+    assert!(!declares("low-smooth:diffuse=0.5,specular=1.8,b=10,c=2").energy_conserving);
+    // C = 2, B = 1: 4/π 2π (2 (1 − 1/2) − ln 2) A = 2.455 A.
+    assert!(declares("low-microfacet:diffuse=0.5,specular=0.203,b=1,c=2").energy_conserving);
+    assert!(!declares("low-microfacet:diffuse=0.5,specular=0.204,b=1,c=2").energy_conserving);
 }

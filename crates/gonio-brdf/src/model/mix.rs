@@ -1,5 +1,6 @@
 //! A mixture of two models (T9b).
 
+use super::Composite;
 use super::sum::same_interior;
 use crate::part::colour::{cast, each_component, mean, only_where, scale};
 use crate::{
@@ -60,11 +61,11 @@ fn declares(spec: &ModelSpec) -> Declares {
 /// If both transmit they must agree on the index of refraction, since there is one inner side; its absorption is that of the first
 /// that does.
 #[derive(Debug, Clone)]
-pub struct Mix<R: Real, const N: usize> {
+pub struct Mix<R: Real, const N: usize, P = Model<R, N>> {
     /// w, [0, 1].
     pub weight: [R; N],
     /// f₁ and f₂.
-    pub parts: Box<[Model<R, N>; 2]>,
+    pub parts: Box<[P; 2]>,
 }
 
 impl<R: Number, const N: usize> Mix<R, N> {
@@ -81,21 +82,33 @@ impl<R: Number, const N: usize> Mix<R, N> {
         }
     }
 
-    pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Mix<S, N> {
-        let weight = cast(self.weight, f);
-        let [first, second] = &*self.parts;
-        Mix {
-            weight,
-            parts: Box::new([first.cast(f), second.cast(f)]),
-        }
-    }
-
     pub(crate) fn set(&mut self, _parameter: &str, value: [R; 3]) {
         self.weight = super::components(value);
     }
+}
 
+impl<R: Real, const N: usize> Composite<R, N> for Mix<R, N> {
+    type With<S: Real, P: Brdf<S, N>> = Mix<S, N, P>;
+
+    fn with<'a, S: Real, P: Brdf<S, N>>(
+        &'a self,
+        number: &impl Fn(R) -> S,
+        part: &impl Fn(&'a Model<R, N>) -> P,
+    ) -> Mix<S, N, P>
+    where
+        R: 'a,
+    {
+        let [first, second] = &*self.parts;
+        Mix {
+            weight: cast(self.weight, number),
+            parts: Box::new([part(first), part(second)]),
+        }
+    }
+}
+
+impl<R: Real, const N: usize, P: Brdf<R, N>> Mix<R, N, P> {
     /// The first part that transmits.
-    fn interior(&self) -> Option<&Model<R, N>> {
+    fn interior(&self) -> Option<&P> {
         self.parts.iter().find(|part| part.transmits())
     }
 
@@ -132,7 +145,7 @@ impl<R: Number, const N: usize> Mix<R, N> {
     }
 }
 
-impl<R: Number, const N: usize> Brdf<R, N> for Mix<R, N> {
+impl<R: Real, const N: usize, P: Brdf<R, N>> Brdf<R, N> for Mix<R, N, P> {
     #[inline]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
         let [first, second] = &*self.parts;

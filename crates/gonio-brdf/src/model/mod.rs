@@ -1,19 +1,25 @@
 //! The models, one file each, and [`Model`], the enum that holds any of them.
 //!
 //! To add one: write its file beside these, with its formula, its `INFO` and its tests; then add its `mod` line and its
-//! line in `models!` below.
+//! line in `models!` below. One that is made of other models stands after `composites` and is a [`Composite`].
 
 pub mod ashikhmin_premoze;
 pub mod ashikhmin_shirley;
+pub mod bagher;
 pub mod blinn_phong;
 pub mod burley;
+pub mod coat;
+pub mod disney;
 pub mod eon;
 pub mod gltf;
 pub mod gooch;
 pub mod lafortune;
 pub mod lambertian;
+pub mod low_microfacet;
+pub mod low_smooth;
 pub mod mirror;
 pub mod mix;
+pub mod openpbr;
 pub mod oren_nayar;
 pub mod phong;
 pub mod retro_reflective;
@@ -41,10 +47,26 @@ pub(crate) trait Castable<R: Real, const N: usize> {
     fn over<S: Number>(&self, f: &impl Fn(R) -> S) -> Self::Over<S>;
 }
 
-/// What is done with a model in its own type: the choice among models then stands outside the loop.
+/// A model made of others. Its parts can be of any type that reflects: a batch evaluates each of them as a batch of its own.
+pub(crate) trait Composite<R: Real, const N: usize> {
+    /// The model over another number type, with other parts.
+    type With<S: Real, P: Brdf<S, N>>: Brdf<S, N>;
+    /// Each number converted by `number`, each part by `part`.
+    fn with<'a, S: Real, P: Brdf<S, N>>(
+        &'a self,
+        number: &impl Fn(R) -> S,
+        part: &impl Fn(&'a Model<R, N>) -> P,
+    ) -> Self::With<S, P>
+    where
+        R: 'a;
+}
+
+/// What is done with a model in its own type: the choice among models then stands outside the loop. One of the two is called, once.
 pub(crate) trait Visitor<R: Real, const N: usize> {
-    /// Called once.
+    /// The model is no composite.
     fn visit<B: Castable<R, N>>(self, model: &B);
+    /// The model is made of others.
+    fn visit_composite<C: Composite<R, N>>(self, model: &C);
 }
 
 /// [`Brdf::eval`] of one model, as a function of its own.
@@ -73,42 +95,43 @@ work!(EvalAndPdfOf: eval_and_pdf -> ([R; N], R));
 work!(SampleOf: sample -> Sample<R, N>);
 
 macro_rules! models {
-    ($($(#[$doc:meta])* $variant:ident: $module:ident,)*) => {
+    ($($(#[$doc:meta])* $variant:ident: $module:ident,)*; composites $($(#[$cdoc:meta])* $composite:ident: $cmodule:ident,)*) => {
         /// Any reflection function of the registry.
         #[derive(Debug, Clone)]
         pub enum Model<R: Real, const N: usize> {
             $($(#[$doc])* $variant($module::$variant<R, N>),)*
+            $($(#[$cdoc])* $composite($cmodule::$composite<R, N, Self>),)*
         }
 
         /// Every model's entry.
-        pub(crate) const INFOS: &[ModelInfo] = &[$($module::INFO,)*];
+        pub(crate) const INFOS: &[ModelInfo] = &[$($module::INFO,)* $($cmodule::INFO,)*];
 
         // Each model's code is a function of its own: a caller would get that of every model, a sum of sums that of every pair,
         // and a compiler would choke on it. Batches choose the model once, through `visit`.
         impl<R: Number, const N: usize> Brdf<R, N> for Model<R, N> {
             fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-                match self { $(Self::$variant(m) => R::out_of_line(EvalOf::<_, R, N>(m, wi, wo)),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(EvalOf::<_, R, N>(m, wi, wo)),)* $(Self::$composite(m) => R::out_of_line(EvalOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
-                match self { $(Self::$variant(m) => R::out_of_line(PdfOf::<_, R, N>(m, wi, wo)),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(PdfOf::<_, R, N>(m, wi, wo)),)* $(Self::$composite(m) => R::out_of_line(PdfOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
-                match self { $(Self::$variant(m) => R::out_of_line(EvalAndPdfOf::<_, R, N>(m, wi, wo)),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(EvalAndPdfOf::<_, R, N>(m, wi, wo)),)* $(Self::$composite(m) => R::out_of_line(EvalAndPdfOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-                match self { $(Self::$variant(m) => R::out_of_line(SampleOf::<_, R, N>(m, wo, u)),)* }
+                match self { $(Self::$variant(m) => R::out_of_line(SampleOf::<_, R, N>(m, wo, u)),)* $(Self::$composite(m) => R::out_of_line(SampleOf::<_, R, N>(m, wo, u)),)* }
             }
             fn albedo_estimate(&self, wo: Vec3<R>) -> R {
-                match self { $(Self::$variant(m) => m.albedo_estimate(wo),)* }
+                match self { $(Self::$variant(m) => m.albedo_estimate(wo),)* $(Self::$composite(m) => m.albedo_estimate(wo),)* }
             }
             fn transmits(&self) -> bool {
-                match self { $(Self::$variant(m) => Brdf::<R, N>::transmits(m),)* }
+                match self { $(Self::$variant(m) => Brdf::<R, N>::transmits(m),)* $(Self::$composite(m) => Brdf::<R, N>::transmits(m),)* }
             }
             fn relative_ior(&self) -> [R; N] {
-                match self { $(Self::$variant(m) => m.relative_ior(),)* }
+                match self { $(Self::$variant(m) => m.relative_ior(),)* $(Self::$composite(m) => m.relative_ior(),)* }
             }
             fn absorption(&self) -> [R; N] {
-                match self { $(Self::$variant(m) => m.absorption(),)* }
+                match self { $(Self::$variant(m) => m.absorption(),)* $(Self::$composite(m) => m.absorption(),)* }
             }
         }
 
@@ -126,26 +149,29 @@ macro_rules! models {
                 $(if info.name == $module::INFO.name {
                     return $module::$variant::from_spec(spec).map(Self::$variant);
                 })*
+                $(if info.name == $cmodule::INFO.name {
+                    return $cmodule::$composite::from_spec(spec).map(Self::$composite);
+                })*
                 unreachable!("invariant: every entry of the registry is in this list")
             }
 
             /// The same model with another number type, each number converted by `f`.
-            pub fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Model<S, N> {
-                match self { $(Self::$variant(m) => Model::$variant(m.cast(f)),)* }
+            pub fn cast<S: Number>(&self, f: &impl Fn(R) -> S) -> Model<S, N> {
+                match self { $(Self::$variant(m) => Model::$variant(m.cast(f)),)* $(Self::$composite(m) => Model::$composite(m.with(f, &|part| part.cast(f))),)* }
             }
 
             /// Calls the visitor with the model in its own type.
             pub(crate) fn visit<V: Visitor<R, N>>(&self, visitor: V) {
-                match self { $(Self::$variant(m) => visitor.visit(m),)* }
+                match self { $(Self::$variant(m) => visitor.visit(m),)* $(Self::$composite(m) => visitor.visit_composite(m),)* }
             }
 
             /// The registry's entry.
             pub fn info(&self) -> &'static ModelInfo {
-                match self { $(Self::$variant(_) => &const { $module::INFO },)* }
+                match self { $(Self::$variant(_) => &const { $module::INFO },)* $(Self::$composite(_) => &const { $cmodule::INFO },)* }
             }
 
             fn set(&mut self, index: usize, value: [R; 3]) {
-                match self { $(Self::$variant(m) => m.set($module::INFO.parameters[index].name, value),)* }
+                match self { $(Self::$variant(m) => m.set($module::INFO.parameters[index].name, value),)* $(Self::$composite(m) => m.set($cmodule::INFO.parameters[index].name, value),)* }
             }
         }
     };
@@ -178,12 +204,20 @@ models! {
     Burley: burley,
     /// Torrance & Sparrow 1967: microfacets (T18).
     TorranceSparrow: torrance_sparrow,
+    /// Bagher et al. 2012: microfacets with numbers of their own for each colour.
+    Bagher: bagher,
+    /// Löw et al. 2012: microfacets with a free scale.
+    LowMicrofacet: low_microfacet,
+    /// Löw et al. 2012: scattering of smooth surfaces.
+    LowSmooth: low_smooth,
     /// A smooth boundary into a clear body.
     SmoothDielectric: smooth_dielectric,
     /// Walter et al. 2007: a rough boundary into a clear body.
     RoughDielectric: rough_dielectric,
     /// A thin pane of glass.
     ThinDielectric: thin_dielectric,
+    /// Burley 2012 and 2015: Disney's principled models.
+    Disney: disney,
     /// The metallic-roughness material of glTF 2.0.
     Gltf: gltf,
     /// Estevez & Kulla 2017: sheen by microfacets.
@@ -196,14 +230,21 @@ models! {
     Toon: toon,
     /// Gooch et al. 1998: warm and cool tones of technical illustration (T20).
     Gooch: gooch,
+    /// A measured table (T19).
+    Table: table,;
+
+    composites
+
     /// A sum of models (T9b).
     Sum: sum,
     /// Two models in shares (T9b).
     Mix: mix,
     /// A model times a colour.
     Scaled: scaled,
-    /// A measured table (T19).
-    Table: table,
+    /// A coat of varnish over a model (T9b).
+    Coat: coat,
+    /// OpenPBR Surface 1.1.
+    OpenPbr: openpbr,
 }
 
 impl<R: Number, const N: usize> Model<R, N> {
@@ -222,7 +263,9 @@ impl<R: Number, const N: usize> Model<R, N> {
     pub fn warnings(&self) -> Vec<String> {
         match self {
             Self::Sum(sum) => sum.parts.iter().flat_map(Model::warnings).collect(),
+            Self::Mix(mix) => mix.parts.iter().flat_map(Model::warnings).collect(),
             Self::Scaled(scaled) => scaled.of.warnings(),
+            Self::Coat(coat) => coat.base().warnings(),
             Self::Table(table) => table.warnings(),
             _ => Vec::new(),
         }
@@ -234,6 +277,7 @@ impl<R: Number, const N: usize> Model<R, N> {
             Self::Sum(sum) => sum.parts.iter().all(Model::is_recordable),
             Self::Mix(mix) => mix.parts.iter().all(Model::is_recordable),
             Self::Scaled(scaled) => scaled.of.is_recordable(),
+            Self::Coat(coat) => coat.base().is_recordable(),
             Self::TorranceSparrow(facets) => facets.is_recordable(),
             Self::RetroReflective(turned) => turned.lobe.is_recordable(),
             other => other.info().recordable,
@@ -279,7 +323,7 @@ impl ParameterSlot {
 
 impl<const N: usize> Model<f32, N> {
     /// Sets a parameter to `value`, of which a number takes the first component; it is limited to the declared range, NaN
-    /// to the low end. `Sum`, `Mix` and `Scaled` pass it on to their parts of that model.
+    /// to the low end. `Sum`, `Mix`, `Scaled` and `Coat` pass it on to their parts of that model.
     pub fn set_parameter(&mut self, slot: ParameterSlot, value: [f32; 3]) {
         match self {
             Self::Sum(sum) if slot.model != sum::INFO.name => {
@@ -294,6 +338,10 @@ impl<const N: usize> Model<f32, N> {
             }
             Self::Scaled(scaled) if slot.model != scaled::INFO.name => {
                 scaled.of.set_parameter(slot, value);
+            }
+            Self::Coat(coat) if slot.model != coat::INFO.name => {
+                coat.base_mut().set_parameter(slot, value);
+                coat.update();
             }
             _ if self.info().name == slot.model => {
                 let (low, high) = match self.info().parameters[slot.index].kind {

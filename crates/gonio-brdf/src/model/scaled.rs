@@ -1,5 +1,6 @@
 //! A model times a colour.
 
+use super::Composite;
 use crate::part::colour::{cast, mean, mul};
 use crate::{
     Brdf, BrdfError, Declares, Kind, Model, ModelInfo, ModelSpec, Number, ParameterInfo, Sample,
@@ -49,11 +50,11 @@ pub const INFO: ModelInfo = ModelInfo {
 
 /// f = c·f₁.
 #[derive(Debug, Clone)]
-pub struct Scaled<R: Real, const N: usize> {
+pub struct Scaled<R: Real, const N: usize, P = Model<R, N>> {
     /// c ≥ 0.
     pub factor: [R; N],
     /// The model f₁.
-    pub of: Box<Model<R, N>>,
+    pub of: Box<P>,
 }
 
 impl<R: Number, const N: usize> Scaled<R, N> {
@@ -67,19 +68,30 @@ impl<R: Number, const N: usize> Scaled<R, N> {
         }
     }
 
-    pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Scaled<S, N> {
-        Scaled {
-            factor: cast(self.factor, f),
-            of: Box::new(self.of.cast(f)),
-        }
-    }
-
     pub(crate) fn set(&mut self, _parameter: &str, value: [R; 3]) {
         self.factor = super::components(value);
     }
 }
 
-impl<R: Number, const N: usize> Brdf<R, N> for Scaled<R, N> {
+impl<R: Real, const N: usize> Composite<R, N> for Scaled<R, N> {
+    type With<S: Real, P: Brdf<S, N>> = Scaled<S, N, P>;
+
+    fn with<'a, S: Real, P: Brdf<S, N>>(
+        &'a self,
+        number: &impl Fn(R) -> S,
+        part: &impl Fn(&'a Model<R, N>) -> P,
+    ) -> Scaled<S, N, P>
+    where
+        R: 'a,
+    {
+        Scaled {
+            factor: cast(self.factor, number),
+            of: Box::new(part(&self.of)),
+        }
+    }
+}
+
+impl<R: Real, const N: usize, P: Brdf<R, N>> Brdf<R, N> for Scaled<R, N, P> {
     #[inline]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
         mul(self.factor, self.of.eval(wi, wo))

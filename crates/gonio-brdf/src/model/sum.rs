@@ -1,10 +1,12 @@
 //! A sum of models (T9b).
 
+use super::Composite;
 use crate::part::colour::{add, grey, only_where, scale};
 use crate::{
     Brdf, BrdfError, Declares, Kind, Model, ModelInfo, ModelSpec, Number, ParameterInfo, Sample,
 };
 use gonio_num::{Real, Vec3};
+use std::marker::PhantomData;
 
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
@@ -65,9 +67,10 @@ pub(super) fn same_interior(spec: &ModelSpec, parts: &[ModelSpec]) -> Result<(),
 /// Parts that transmit must agree on the index of refraction, since there is one inner side; its absorption is that of the first
 /// of them.
 #[derive(Debug, Clone)]
-pub struct Sum<R: Real, const N: usize> {
+pub struct Sum<R: Real, const N: usize, P = Model<R, N>> {
     /// The parts, at least one.
-    pub parts: Vec<Model<R, N>>,
+    pub parts: Vec<P>,
+    colours: PhantomData<[R; N]>,
 }
 
 impl<R: Number, const N: usize> Sum<R, N> {
@@ -78,22 +81,38 @@ impl<R: Number, const N: usize> Sum<R, N> {
         }
         same_interior(spec, parts)?;
         let parts: Result<_, _> = parts.iter().map(ModelSpec::build).collect();
-        Ok(Self { parts: parts? })
-    }
-
-    /// The first part that transmits.
-    fn interior(&self) -> Option<&Model<R, N>> {
-        self.parts.iter().find(|part| part.transmits())
-    }
-
-    pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Sum<S, N> {
-        let parts = self.parts.iter().map(|p| p.cast(f));
-        Sum {
-            parts: parts.collect(),
-        }
+        Ok(Self {
+            parts: parts?,
+            colours: PhantomData,
+        })
     }
 
     pub(crate) fn set(&mut self, _parameter: &str, _value: [R; 3]) {}
+}
+
+impl<R: Real, const N: usize> Composite<R, N> for Sum<R, N> {
+    type With<S: Real, P: Brdf<S, N>> = Sum<S, N, P>;
+
+    fn with<'a, S: Real, P: Brdf<S, N>>(
+        &'a self,
+        _number: &impl Fn(R) -> S,
+        part: &impl Fn(&'a Model<R, N>) -> P,
+    ) -> Sum<S, N, P>
+    where
+        R: 'a,
+    {
+        Sum {
+            parts: self.parts.iter().map(part).collect(),
+            colours: PhantomData,
+        }
+    }
+}
+
+impl<R: Real, const N: usize, P: Brdf<R, N>> Sum<R, N, P> {
+    /// The first part that transmits.
+    fn interior(&self) -> Option<&P> {
+        self.parts.iter().find(|part| part.transmits())
+    }
 
     /// Probability weight of part `k`, before division by the total.
     #[inline]
@@ -113,7 +132,7 @@ impl<R: Number, const N: usize> Sum<R, N> {
     }
 }
 
-impl<R: Number, const N: usize> Brdf<R, N> for Sum<R, N> {
+impl<R: Real, const N: usize, P: Brdf<R, N>> Brdf<R, N> for Sum<R, N, P> {
     #[inline]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
         let mut f = grey(R::zero());

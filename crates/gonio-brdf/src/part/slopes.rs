@@ -122,6 +122,33 @@ impl<R: Real> Slopes<R> {
         })
     }
 
+    /// Of slope scales along x and y, limited to their range.
+    pub(crate) fn of_scales(alpha_x: R, alpha_y: R) -> Self {
+        let floor = |a: R| a.clamp(R::lit(ALPHA_MIN), R::one());
+        let (alpha_x, alpha_y) = (floor(alpha_x), floor(alpha_y));
+        Self {
+            alpha_x,
+            alpha_y,
+            rotation: None,
+            alpha: (alpha_x * alpha_y).sqrt(),
+            aspect: (alpha_y / alpha_x).sqrt(),
+        }
+    }
+
+    /// Of a perceptual roughness, an anisotropy and a rotation in degrees.
+    pub(crate) fn new(roughness: R, anisotropy: R, rotation_deg: R) -> Self {
+        let turn = rotation_deg * R::lit(PI / 180.0);
+        let mut slopes = Self {
+            alpha_x: R::one(),
+            alpha_y: R::one(),
+            rotation: Some([turn.cos(), turn.sin()]),
+            alpha: roughness * roughness,
+            aspect: R::one(),
+        };
+        slopes.set("anisotropy", anisotropy);
+        slopes
+    }
+
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Slopes<S> {
         Slopes {
             alpha_x: f(self.alpha_x),

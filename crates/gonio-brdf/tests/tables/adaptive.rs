@@ -434,10 +434,12 @@ fn conversion() {
     assert!(!path("c.bsdf").exists());
 }
 
+/// Dimensions and numbers; no dimensions: a field that is left out.
+type Array = (Vec<usize>, Vec<f32>);
+
 /// A sound file, but for the fields that `change` takes or adds.
-fn broken(change: &dyn Fn(&str) -> Option<(Vec<usize>, Vec<f32>)>) -> String {
+fn broken(change: &dyn Fn(&str) -> Option<Array>) -> String {
     let mut file = TensorWriter::new();
-    let one = vec![1.0; 12];
     for (name, shape) in [
         ("theta_i", &[2][..]),
         ("phi_i", &[1]),
@@ -448,7 +450,7 @@ fn broken(change: &dyn Fn(&str) -> Option<(Vec<usize>, Vec<f32>)>) -> String {
         ("rgb", &[1, 2, 3, 2, 2]),
     ] {
         let count: usize = shape.iter().product();
-        let mut values: Vec<f32> = one.iter().copied().cycle().take(count).collect();
+        let mut values: Vec<f32> = vec![1.0; count];
         if name == "theta_i" {
             values = vec![0.0, 1.5];
         }
@@ -509,7 +511,7 @@ fn broken_files_name_the_field() {
         (
             "phi_i",
             vec![3],
-            vec![-3.1416, 0.0, 3.1416],
+            vec![-PI as f32, 0.0, PI as f32],
             ["`vndf`", "3×2×n×n"],
         ),
         ("ndf", vec![1, 1], vec![1.0], ["`ndf`", "1×1 nodes"]),

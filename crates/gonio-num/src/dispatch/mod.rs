@@ -160,13 +160,19 @@ pub fn dispatch_on<K: Kernel>(set: InstructionSet, kernel: K) -> K::Output {
 /// lanes, else for the baseline.
 #[inline(never)]
 pub(crate) fn run_with_lanes<const N: usize, W: Work>(work: W) -> W::Output {
-    match InstructionSet::detect() {
-        #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx2 if N == 8 => x86::run_avx2(Same::<W, N>(work)),
-        #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx512 if N == 16 => x86::run_avx512(Same::<W, N>(work)),
-        _ => work.run(),
+    // `const`: the arms for another number of lanes are never compiled.
+    #[cfg(target_arch = "x86_64")]
+    {
+        let set = InstructionSet::detect();
+        if const { N == 8 } {
+            if set == InstructionSet::Avx2 {
+                return x86::run_avx2(Same::<W, N>(work));
+            }
+        } else if const { N == 16 } && set == InstructionSet::Avx512 {
+            return x86::run_avx512(Same::<W, N>(work));
+        }
     }
+    work.run()
 }
 
 /// Work as a kernel that is only run over `N` lanes.
