@@ -9,4 +9,5 @@ mod conversion;
 mod formats;
 mod layouts;
 mod orientation;
+mod rgl;
 mod support;
