@@ -41,12 +41,11 @@ fn is_thin(spec: &ModelSpec) -> bool {
     spec.word("geometry_thin_walled") == "on"
 }
 
-/// The index of what lies on the inner side, if anything gets there.
+/// The index of what lies on the inner side, for a body that light enters, or a sheet, which has two outer sides.
 fn transmitting_index(spec: &ModelSpec) -> Option<f64> {
     let positive = |key: &str| spec.real::<f64>(key) > 0.0;
     if is_thin(spec) {
-        let through = positive("transmission_weight") || positive("subsurface_weight");
-        return through.then_some(1.0);
+        return Some(1.0);
     }
     let values: Values<f64, 3> = Values::from_spec(spec).ok()?;
     positive("transmission_weight").then(|| values.body_ior())
@@ -561,7 +560,7 @@ impl<R: Real, const N: usize, P: Brdf<R, N>> Brdf<R, N> for OpenPbr<R, N, P> {
     }
 
     fn transmits(&self) -> bool {
-        self.present[slab::BODY] || (self.thin && self.present[slab::SUBSURFACE])
+        self.thin || self.present[slab::BODY]
     }
 
     fn relative_ior(&self) -> [R; N] {
