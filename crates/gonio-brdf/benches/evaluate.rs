@@ -1,6 +1,7 @@
 //! Evaluations per second: single calls against batches over lanes.
 //!
-//! `cargo bench -p gonio-brdf --bench evaluate`; 4096 pairs of directions, which stay in the cache; one thread.
+//! `cargo bench -p gonio-brdf --bench evaluate`; 4096 pairs of directions, which stay in the cache; one thread. With `GONIO_RGL`, the folder of
+//! files of the RGL database, `table` is one of them.
 
 use divan::{Bencher, black_box, counter::ItemsCount};
 use gonio_brdf::batch::{self, Directions, Samples};
@@ -37,6 +38,16 @@ fn main() {
     divan::main();
 }
 
+/// The models, and a table if there is one.
+fn models() -> Vec<&'static str> {
+    let mut all = MODELS.to_vec();
+    match std::env::var("GONIO_RGL") {
+        Ok(folder) => all.push(format!("table:{folder}/paper_white_rgb.bsdf").leak()),
+        Err(_) => eprintln!("without `table`: GONIO_RGL is not set"),
+    }
+    all
+}
+
 fn model(text: &str) -> Model<f32, 3> {
     ModelSpec::parse(text)
         .and_then(|spec| spec.build())
@@ -64,7 +75,7 @@ fn view(v: &[Vec<f32>; 3]) -> Directions<'_> {
     }
 }
 
-#[divan::bench(args = MODELS)]
+#[divan::bench(args = models())]
 fn eval_single(bencher: Bencher, text: &str) {
     let (model, wi, wo) = (model(text), vectors("wi"), vectors("wo"));
     let mut out = vec![[0.0; 3]; COUNT];
@@ -77,7 +88,7 @@ fn eval_single(bencher: Bencher, text: &str) {
     });
 }
 
-#[divan::bench(args = MODELS)]
+#[divan::bench(args = models())]
 fn eval_batch(bencher: Bencher, text: &str) {
     let (model, wi, wo) = (model(text), split(&vectors("wi")), split(&vectors("wo")));
     let mut out = [0, 1, 2].map(|_| vec![0.0; COUNT]);
@@ -88,7 +99,7 @@ fn eval_batch(bencher: Bencher, text: &str) {
     });
 }
 
-#[divan::bench(args = MODELS)]
+#[divan::bench(args = models())]
 fn pdf_single(bencher: Bencher, text: &str) {
     let (model, wi, wo) = (model(text), vectors("wi"), vectors("wo"));
     let mut out = vec![0.0; COUNT];
@@ -101,7 +112,7 @@ fn pdf_single(bencher: Bencher, text: &str) {
     });
 }
 
-#[divan::bench(args = MODELS)]
+#[divan::bench(args = models())]
 fn pdf_batch(bencher: Bencher, text: &str) {
     let (model, wi, wo) = (model(text), split(&vectors("wi")), split(&vectors("wo")));
     let mut out = vec![0.0; COUNT];
@@ -111,7 +122,7 @@ fn pdf_batch(bencher: Bencher, text: &str) {
     });
 }
 
-#[divan::bench(args = MODELS)]
+#[divan::bench(args = models())]
 fn sample_single(bencher: Bencher, text: &str) {
     let (model, wo, u) = (model(text), vectors("wo"), numbers());
     let mut out = vec![([0.0; 3], 0.0); COUNT];
@@ -125,7 +136,7 @@ fn sample_single(bencher: Bencher, text: &str) {
     });
 }
 
-#[divan::bench(args = MODELS)]
+#[divan::bench(args = models())]
 fn sample_batch(bencher: Bencher, text: &str) {
     let (model, wo, u) = (model(text), split(&vectors("wo")), numbers());
     let mut wi = [0, 1, 2].map(|_| vec![0.0; COUNT]);

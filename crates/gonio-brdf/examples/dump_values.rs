@@ -4,7 +4,8 @@
 //!
 //! Columns: wi x, y, z; wo x, y, z; f·|cosθi| red, green, blue; pdf; u. The directions are uniform on the hemisphere, for a model that
 //! transmits on the sphere, and rounded to single precision. For a model of discrete directions wi, f·|cosθi| over the density, and
-//! the probability are those of a sample, drawn with u, which is 0.001 and 0.999 in turn.
+//! the probability are those of a sample, drawn with u, which is 0.001 and 0.999 in turn. Then a sample for wo: three
+//! random numbers, wi x, y, z, weight red, green, blue, pdf.
 
 use gonio_brdf::{Brdf, BrdfError, Model, ModelSpec};
 use gonio_num::Vec3;
@@ -29,6 +30,7 @@ fn main() -> Result<(), BrdfError> {
             .to_f32()
             .to_f64()
     };
+    let mut numbers = Rng::from_name("numbers");
     for k in 0..count {
         let u = if k % 2 == 0 { 0.001 } else { 0.999 };
         let (mut wi, wo): (Vec3<f64>, Vec3<f64>) = (direction(), direction());
@@ -37,8 +39,20 @@ fn main() -> Result<(), BrdfError> {
             let s = model.sample(wo, [0.5, 0.5, u]);
             (wi, f, pdf) = (s.wi, s.weight, s.pdf);
         }
-        let row = [wi.x, wi.y, wi.z, wo.x, wo.y, wo.z, f[0], f[1], f[2], pdf, u];
-        println!("{}", row.map(|x| format!("{x:e}")).join(","));
+        let random = [0; 3].map(|_| f64::from(numbers.next_f32()));
+        let s = model.sample(wo, random);
+        let row = [
+            &wi.to_array(),
+            &wo.to_array(),
+            &f,
+            &[pdf, u][..],
+            &random,
+            &s.wi.to_array(),
+            &s.weight,
+            &[s.pdf],
+        ];
+        let columns: Vec<_> = row.concat().iter().map(|x| format!("{x:e}")).collect();
+        println!("{}", columns.join(","));
     }
     Ok(())
 }

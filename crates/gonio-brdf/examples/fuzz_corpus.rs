@@ -1,7 +1,8 @@
 //! Small sound files of every format of measured reflection, as beginnings for the fuzz targets: `fuzz/corpus`.
 
 use gonio_brdf::measured::{
-    Axis, Basis, Boundary, Channel, Layout, Parameterization, Scale, Side, format, tabulate,
+    Adaptive, Axis, Basis, Boundary, Channel, Component, Data, Layout, Measurement, Metadata,
+    Nodes, Parameterization, Scale, Side, Tables, format, tabulate,
 };
 use gonio_num::Vec3;
 use std::error::Error;
@@ -98,6 +99,22 @@ fn main() -> Result<(), Box<dyn Error>> {
             (format.write)(&folder.join(format!("{name}-{file}")), &m)?;
         }
     }
+    for (file, channels, phis) in [("rgb", &rgb[..], 1), ("spectral", &nm, 3)] {
+        let channels: Vec<Channel> = channels.iter().map(|c| Channel::from_name(c)).collect();
+        let m = adaptive(channels, phis)?;
+        for (name, folder) in [
+            ("rgl", "rgl"),
+            ("rgl", "any"),
+            ("gonio", "gonio"),
+            ("gonio", "any"),
+        ] {
+            let format = format::find(name).ok_or(name)?;
+            let folder = corpus.join(folder);
+            std::fs::create_dir_all(&folder)?;
+            let adaptive = if name == "rgl" { "" } else { "adaptive-" };
+            (format.write)(&folder.join(format!("{name}-{adaptive}{file}")), &m)?;
+        }
+    }
     // Repeated to the length of every file of this format.
     let numbers: Vec<u8> = [0.25f64, 0.5, -0.125]
         .iter()
@@ -109,4 +126,39 @@ fn main() -> Result<(), Box<dyn Error>> {
         [&[1], &numbers[1..]].concat(),
     )?;
     Ok(())
+}
+
+/// A small adaptive table for so many azimuths of the viewer.
+fn adaptive(channels: Vec<Channel>, phis: usize) -> Result<Measurement, Box<dyn Error>> {
+    let nodes = |count: usize| Nodes {
+        width: 3,
+        height: 2,
+        values: (0..6 * count)
+            .map(|k| 0.5 + 0.125 * (k % 5) as f32)
+            .collect(),
+    };
+    let phi_i = match phis {
+        1 => vec![0.0],
+        _ => (0..phis)
+            .map(|k| (TAU * k as f64 / (phis - 1) as f64 - PI) as f32)
+            .collect(),
+    };
+    let one_row = |values: Vec<f32>| Nodes {
+        width: 3,
+        height: 1,
+        values: values.into(),
+    };
+    let tables = Tables {
+        phi_i,
+        theta_i: vec![0.0, 1.5],
+        ndf: one_row(vec![1.0, 0.5, 0.0]),
+        sigma: one_row(vec![1.0, 0.75, 0.25]),
+        vndf: nodes(2 * phis),
+        luminance: nodes(2 * phis),
+        jacobian: true,
+    };
+    let values = nodes(2 * phis * channels.len()).values;
+    let data = Data::Adaptive(Adaptive::new(tables, channels.len(), values)?);
+    let components = vec![Component::reflection(data)];
+    Ok(Measurement::new(components, channels, Metadata::default())?)
 }

@@ -2,7 +2,8 @@
 //!
 //! Directions are structures of arrays. Results have the same bits as those of a single call in `f32`, on any machine.
 //! A batch is several times faster than single calls for the closed-form models. A model made of others has a batch of each part
-//! evaluated for a group of directions at a time, and `Table` reads its memory lane by lane.
+//! evaluated for a group of directions at a time, and `Table` reads its memory lane by lane, but for adaptive
+//! tables, which have batches of their own.
 
 use crate::model::{Castable, Composite, Visitor};
 use crate::{Brdf, Model, Sample};
@@ -122,6 +123,12 @@ pub fn eval_on<const N: usize>(
             "results must have the directions' length"
         );
     }
+    if let Model::Table(table) = model
+        && let Some((all, factor)) = table.batched()
+    {
+        all.eval_batch(set, factor, [wi, wo], three(result));
+        return;
+    }
     model.visit(On(set, Eval { wi, wo, result }));
 }
 
@@ -138,6 +145,12 @@ pub fn pdf_on<const N: usize>(
 ) {
     wi.check(result.len());
     wo.check(result.len());
+    if let Model::Table(table) = model
+        && let Some((all, _)) = table.batched()
+    {
+        all.pdf_batch(set, [wi, wo], result);
+        return;
+    }
     model.visit(On(set, Pdf { wi, wo, result }));
 }
 
@@ -163,7 +176,29 @@ pub fn sample_on<const N: usize>(
         same,
         "directions, numbers and results must have the same length"
     );
+    if let Model::Table(table) = model
+        && let Some((all, factor)) = table.batched()
+    {
+        let result = Samples {
+            wi: result.wi,
+            weight: three(result.weight),
+            pdf: result.pdf,
+            delta: result.delta,
+        };
+        all.sample_batch(set, factor, wo, u, result);
+        return;
+    }
     model.visit(On(set, Draw { wo, u, result }));
+}
+
+/// The slices of three colour components.
+fn three<T, const N: usize>(slices: [T; N]) -> [T; 3] {
+    let mut slices = slices.into_iter();
+    std::array::from_fn(|_| {
+        slices
+            .next()
+            .expect("invariant: a table with batches has three")
+    })
 }
 
 /// The model, of which a compiler knows nothing from one step to the next. Otherwise it makes a loop of its own for every combination

@@ -47,7 +47,7 @@ pub use brdf::{Brdf, Sample};
 pub use check::check;
 pub use error::BrdfError;
 pub use model::{Model, ParameterSlot};
-pub use number::{Index, LaneIndex, Number};
+pub use number::{Function, Index, LaneIndex, Number};
 pub use parameter::{Kind, ParameterInfo, Value};
 pub use registry::{Alias, Declares, ModelInfo};
 pub use showcase::showcase;

@@ -1,5 +1,6 @@
 //! [`Measurement`], what a file holds: numbers, what they stand for, and where they come from.
 
+use super::adaptive::Adaptive;
 use super::channel::{Channel, wavelengths};
 use super::grid::Grid;
 use super::klems::Klems;
@@ -75,6 +76,8 @@ pub enum Data {
     Klems(Klems),
     /// Constant over squares of varying size.
     TensorTree(TensorTree),
+    /// At the nodes of a square that visible microfacet normals are drawn from, linear between.
+    Adaptive(Adaptive),
 }
 
 impl Data {
@@ -90,6 +93,7 @@ impl Data {
                 }
             }
             Self::TensorTree(t) => format!("tensor tree of rank {}", t.rank()),
+            Self::Adaptive(_) => "adaptive, by visible microfacet normals".into(),
         }
     }
 
@@ -108,6 +112,12 @@ impl Data {
                 t.leaves().len() / t.channels(),
                 t.depth()
             ),
+            Self::Adaptive(a) => {
+                let [width, height] = a.shape();
+                let t = a.tables();
+                let (phis, thetas) = (t.phi_i.len(), t.theta_i.len());
+                format!("{phis} × {thetas} directions of the viewer, {height} × {width} nodes")
+            }
         }
     }
 
@@ -117,6 +127,7 @@ impl Data {
             Self::Grid(g) => g.channels(),
             Self::Klems(k) => k.channels(),
             Self::TensorTree(t) => t.channels(),
+            Self::Adaptive(a) => a.channels(),
         }
     }
 
@@ -126,6 +137,7 @@ impl Data {
             Self::Grid(g) => g.values(),
             Self::Klems(k) => k.values(),
             Self::TensorTree(t) => t.leaves(),
+            Self::Adaptive(a) => a.values(),
         }
     }
 
@@ -135,6 +147,7 @@ impl Data {
             Self::Grid(g) => Self::Grid(g.with_values(values)),
             Self::Klems(k) => Self::Klems(k.with_values(values)),
             Self::TensorTree(t) => Self::TensorTree(t.with_leaves(values)),
+            Self::Adaptive(a) => Self::Adaptive(a.with_values(values)),
         }
     }
 
@@ -144,6 +157,7 @@ impl Data {
             Self::Grid(g) => g.parameterization().is_isotropic(),
             Self::Klems(_) => false,
             Self::TensorTree(t) => t.rank() == 3,
+            Self::Adaptive(a) => a.is_isotropic(),
         }
     }
 
@@ -169,6 +183,7 @@ impl Data {
             Self::Grid(g) => g.interpolate(wi, wo, out),
             Self::Klems(k) => k.lookup(wi, wo, out),
             Self::TensorTree(t) => t.lookup(wi, wo, out),
+            Self::Adaptive(a) => a.lookup(wi, wo, out),
         }
     }
 
@@ -182,6 +197,18 @@ impl Data {
                 format!("incoming patch {}, outgoing {}", cell % n, cell / n)
             }
             Self::TensorTree(_) => format!("leaf {cell}"),
+            Self::Adaptive(a) => {
+                let [slice, _, row, column] = a.place(at);
+                format!("direction {slice} of the viewer, row {row}, column {column}")
+            }
+        }
+    }
+
+    /// The channel of a number.
+    pub(super) fn channel(&self, at: usize) -> usize {
+        match self {
+            Self::Adaptive(a) => a.place(at)[1],
+            _ => at % self.channels(),
         }
     }
 }

@@ -11,10 +11,12 @@
 //! | [`Grid`] over directions | linear | incoming directions, by cells |
 //! | [`Klems`] | constant in a patch | f·cosθi exactly |
 //! | [`TensorTree`] | constant in a square | f·cosθi exactly |
+//! | [`Adaptive`] | linear | half vectors, by luminance |
 //!
 //! To add a layout: a variant of [`Data`] with its entries there, and its prepared form in `prepared.rs`. To add a format: a file in
 //! `format`, and a line in [`format::FORMATS`].
 
+mod adaptive;
 mod build;
 mod channel;
 mod convert;
@@ -36,6 +38,8 @@ mod tree;
 mod values;
 mod views;
 
+pub(crate) use adaptive::AdaptiveTable;
+pub use adaptive::{Adaptive, Nodes, Tables};
 pub use build::{Layout, Progress, Sampled, tabulate};
 pub use channel::{Channel, ToRgb, wavelengths};
 pub use convert::{

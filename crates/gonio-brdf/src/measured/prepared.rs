@@ -1,5 +1,6 @@
 //! [`Measured`], a measurement ready to be evaluated and drawn from.
 
+use super::adaptive::AdaptiveTable;
 use super::channel::ToRgb;
 use super::grid::GridTable;
 use super::klems::KlemsTable;
@@ -69,6 +70,7 @@ enum Table {
     Grid(Box<GridTable>),
     Klems(Box<KlemsTable>),
     Tree(Box<TreeTable>),
+    Adaptive(Box<AdaptiveTable>),
 }
 
 /// The same expression for each kind of table.
@@ -78,6 +80,7 @@ macro_rules! each_table {
             Table::Grid($t) => $body,
             Table::Klems($t) => $body,
             Table::Tree($t) => $body,
+            Table::Adaptive($t) => $body,
         }
     };
 }
@@ -92,6 +95,7 @@ impl Table {
             Data::Grid(grid) => Self::Grid(Box::new(GridTable::new(grid, to_rgb, gamut))),
             Data::Klems(klems) => Self::Klems(Box::new(KlemsTable::new(klems, to_rgb, gamut))),
             Data::TensorTree(tree) => Self::Tree(Box::new(TreeTable::new(tree, to_rgb, gamut)?)),
+            Data::Adaptive(all) => Self::Adaptive(Box::new(AdaptiveTable::new(all, to_rgb, gamut))),
         })
     }
 }
@@ -233,6 +237,20 @@ impl Measured {
         }
     }
 
+    /// The adaptive table that is alone and of the reflection on the front, which has batches of its own.
+    #[inline(always)]
+    pub(crate) fn adaptive_alone(&self) -> Option<&AdaptiveTable> {
+        match &self.parts[..] {
+            [
+                Part {
+                    side: Side::ReflectionFront,
+                    table: Table::Adaptive(all),
+                },
+            ] => Some(all),
+            _ => None,
+        }
+    }
+
     /// f in sr⁻¹, linear RGB; 0 where nothing was measured.
     #[inline(always)]
     pub fn eval<R: Number>(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; 3] {
@@ -276,6 +294,19 @@ impl Measured {
             sum = sum + R::select(accepts(part.side, wi, wo), share * p, R::zero());
         }
         sum
+    }
+
+    /// [`Measured::eval`] and [`Measured::pdf`] at once, the same to the bit.
+    #[inline(always)]
+    pub fn eval_and_pdf<R: Number>(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; 3], R) {
+        match self.adaptive_alone() {
+            Some(all) => {
+                let (f, pdf) = all.eval_and_pdf(wi, wo);
+                let both = above(wi, wo);
+                (only_where::<R, 3>(both, f), R::select(both, pdf, R::zero()))
+            }
+            None => (self.eval(wi, wo), self.pdf(wi, wo)),
+        }
     }
 
     /// Draws a direction to the light for the viewer's direction `wo`; (0, 0, 0) where that gives nothing.

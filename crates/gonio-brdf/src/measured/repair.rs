@@ -6,7 +6,8 @@ use super::metadata::{Found, Repair};
 use crate::BrdfError;
 use std::path::Path;
 
-/// Replaces what is not a value: counts it in `found`. A component with nothing to replace is left where it is.
+/// Replaces what is not a value: counts it in `found`. A component with nothing to replace is left where it is. Negative numbers of an
+/// adaptive table that count as 0 stay, as they are interpolated.
 pub(super) fn repair(
     path: &Path,
     measurement: &mut Measurement,
@@ -36,6 +37,8 @@ pub(super) fn repair(
         if faults == 0 && !unreachable {
             continue;
         }
+        let stay = matches!(component.data, Data::Adaptive(_));
+        let mut changed = unreachable;
         let mut new = values.to_vec();
         if state.is_empty() {
             state = vec![State::Full; new.len()];
@@ -59,12 +62,29 @@ pub(super) fn repair(
             };
             match repair {
                 Repair::Refuse => return Err(refused(path, &component.data, at, expected)),
-                Repair::Zero => *x = 0.0,
-                Repair::Fill => state[at] = State::Empty,
+                Repair::Zero if *x < 0.0 && stay => {}
+                Repair::Zero => {
+                    *x = 0.0;
+                    changed = true;
+                }
+                Repair::Fill => {
+                    state[at] = State::Empty;
+                    changed = true;
+                }
             }
         }
-        if let Data::Grid(grid) = &component.data {
-            fill(grid, &mut new, &mut state);
+        match &component.data {
+            _ if !changed => continue,
+            Data::Grid(grid) => fill_grid(grid, &mut new, &mut state),
+            Data::Adaptive(all) => {
+                let [width, height] = all.shape();
+                let size = width * height;
+                let functions = new.chunks_exact_mut(size);
+                for (values, state) in functions.zip(state.chunks_exact_mut(size)) {
+                    fill(&[height, width], &[false; 2], 1, values, state);
+                }
+            }
+            Data::Klems(_) | Data::TensorTree(_) => {}
         }
         // Nothing lies around a patch or a leaf in a way that would tell its value, and a grid may have no value at all.
         for (x, state) in new.iter_mut().zip(&state) {
@@ -80,7 +100,7 @@ pub(super) fn repair(
 fn refused(path: &Path, data: &Data, at: usize, expected: &str) -> BrdfError {
     BrdfError::Format {
         path: path.into(),
-        place: format!("{}, channel {}", data.place(at), at % data.channels()),
+        place: format!("{}, channel {}", data.place(at), data.channel(at)),
         found: data.values()[at].to_string(),
         expected: expected.into(),
     }
@@ -115,19 +135,27 @@ fn below_the_horizon(grid: &Grid) -> Vec<State> {
     state
 }
 
-/// Fills empty numbers with the mean of their neighbours along the axes, from the edge of what is full inwards.
-fn fill(grid: &Grid, values: &mut [f32], state: &mut [State]) {
-    let channels = grid.channels();
-    let shape = grid.shape();
-    let mut strides = vec![channels; shape.len()];
-    for k in (0..shape.len().saturating_sub(1)).rev() {
-        strides[k] = strides[k + 1] * shape[k + 1];
-    }
+fn fill_grid(grid: &Grid, values: &mut [f32], state: &mut [State]) {
     let periodic: Vec<bool> = grid
         .axes()
         .iter()
         .map(|a| matches!(a.boundary(), super::grid::Boundary::Periodic(_)))
         .collect();
+    fill(&grid.shape(), &periodic, grid.channels(), values, state);
+}
+
+/// Fills empty numbers with the mean of their neighbours along the axes, from the edge of what is full inwards.
+fn fill(
+    shape: &[usize],
+    periodic: &[bool],
+    channels: usize,
+    values: &mut [f32],
+    state: &mut [State],
+) {
+    let mut strides = vec![channels; shape.len()];
+    for k in (0..shape.len().saturating_sub(1)).rev() {
+        strides[k] = strides[k + 1] * shape[k + 1];
+    }
     let neighbours = |at: usize, into: &mut Vec<usize>| {
         into.clear();
         for k in 0..shape.len() {

@@ -1,6 +1,6 @@
 //! A measured table (T19).
 
-use crate::measured::{self, LoadOptions, Measured, Missing, Repair, Select, Side};
+use crate::measured::{self, AdaptiveTable, LoadOptions, Measured, Missing, Repair, Select, Side};
 use crate::part::colour::{cast, mean, mul};
 use crate::{Brdf, BrdfError, Declares, Kind, ModelInfo, ModelSpec, Number, ParameterInfo, Sample};
 use gonio_num::{Real, Vec3};
@@ -12,7 +12,8 @@ pub const INFO: ModelInfo = ModelInfo {
     name: "table",
     summary: "a measured table: a file in one of the formats of measured reflection",
     paper: "Matusik et al. 2003, \"A Data-Driven Reflectance Model\"; Rusinkiewicz 1998 for half and difference angles; \
-            Klems 1994 for patches; Ward et al. 2012 for tensor trees",
+            Klems 1994 for patches; Ward et al. 2012 for tensor trees; \
+            Dupuy & Jakob 2018, \"An Adaptive Parameterization for Efficient Material Acquisition and Rendering\", for adaptive tables",
     parameters: &[
         ParameterInfo {
             name: "file",
@@ -94,11 +95,13 @@ fn source(spec: &ModelSpec) -> Result<(String, LoadOptions), BrdfError> {
 /// f(ωi, ωo) from a measured table, times a colour.
 ///
 /// A grid of angles is interpolated linearly along every axis, constant beyond the outermost nodes and periodic in azimuth; patches and
-/// tensor trees are constant within a cell. Colours are linear RGB: spectra are projected with the CIE 1931 observer under
+/// tensor trees are constant within a cell; an adaptive table is linear over the square that visible microfacet normals are drawn from, and
+/// in the viewer's angles. Colours are linear RGB: spectra are projected with the CIE 1931 observer under
 /// D65, so that a flat reflectance is grey.
 ///
 /// Sampling is exact for the interpolant: grids are drawn from by cells, of half vectors or of incoming directions, for the viewer's
-/// directions around the one at hand; patches and trees in proportion to f·cosθi.
+/// directions around the one at hand; patches and trees in proportion to f·cosθi; adaptive tables by their luminance, then by visible
+/// normals.
 #[derive(Debug, Clone)]
 pub struct Table<R: Real, const N: usize> {
     /// The table.
@@ -168,6 +171,12 @@ impl<R: Number, const N: usize> Brdf<R, N> for Table<R, N> {
     }
 
     #[inline(always)]
+    fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
+        let (f, pdf) = self.data.eval_and_pdf(wi, wo);
+        (mul(self.scale, super::components(f)), pdf)
+    }
+
+    #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
         self.sample_of(self.data.sample(wo, u), wo)
     }
@@ -180,5 +189,13 @@ impl<R: Number, const N: usize> Brdf<R, N> for Table<R, N> {
     #[inline(always)]
     fn transmits(&self) -> bool {
         self.data.transmits()
+    }
+}
+
+impl<const N: usize> Table<f32, N> {
+    /// The table, if it has batches of its own for the colours that are asked for, and what it is multiplied by.
+    pub(crate) fn batched(&self) -> Option<(&AdaptiveTable, [f32; 3])> {
+        let all = self.data.adaptive_alone()?;
+        Some((all, *self.scale.first_chunk().filter(|_| N == 3)?))
     }
 }

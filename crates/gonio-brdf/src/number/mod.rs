@@ -4,12 +4,28 @@ mod gather;
 #[cfg(test)]
 mod tests;
 
-use crate::part::colour::each_component;
 use gonio_num::Real;
 use gonio_num::dual::Dual;
 use gonio_num::expr::Expr;
 use gonio_num::lanes::{LaneMask, Lanes};
 use std::fmt::Debug;
+
+/// Runs the body for `$i` = 0, 1, … `$n` − 1, at most 7, written out.
+///
+/// Not a loop: of a loop over vectors of lanes a compiler makes vectors across its steps, with a lane of each.
+macro_rules! written_out {
+    ($n:expr, $i:ident => $body:block) => {
+        const { assert!($n <= 8) };
+        written_out!(@ $n, $i, $body, 0, 1, 2, 3, 4, 5, 6, 7);
+    };
+    (@ $n:expr, $i:ident, $body:block, $($k:literal),+) => {
+        $(if $n > $k {
+            let $i = $k;
+            $body
+        })+
+    };
+}
+pub(crate) use written_out;
 
 /// Whole numbers from 0 that address a table: `u32`, or one a lane. Arithmetic wraps around at 2³²; [`Number::gather`] limits
 /// what comes out of it to the table.
@@ -20,6 +36,29 @@ pub trait Index: Copy + Debug {
     fn plus(self, i: Self) -> Self;
     /// self · factor.
     fn times(self, factor: u32) -> Self;
+    /// The smaller of self and `limit`.
+    fn least(self, limit: u32) -> Self;
+}
+
+/// A function of `K` numbers that has code of its own for single and for double precision.
+pub trait Function<const K: usize, const M: usize> {
+    /// Its values in single precision.
+    fn single(&self, x: [f32; K]) -> [f32; M];
+    /// Its values in double precision.
+    fn double(&self, x: [f64; K]) -> [f64; M];
+}
+
+/// A function in double precision for both.
+struct Through<'a, const K: usize, const M: usize>(&'a dyn Fn([f64; K]) -> [f64; M]);
+
+impl<const K: usize, const M: usize> Function<K, M> for Through<'_, K, M> {
+    fn single(&self, x: [f32; K]) -> [f32; M] {
+        (self.0)(x.map(f64::from)).map(|y| y as f32)
+    }
+
+    fn double(&self, x: [f64; K]) -> [f64; M] {
+        (self.0)(x)
+    }
 }
 
 /// A [`Real`] with which models, tables included, can be evaluated.
@@ -27,6 +66,10 @@ pub trait Index: Copy + Debug {
 /// A table in memory is read in three steps, each of them over lanes: [`Number::cell`] finds where a coordinate lies,
 /// [`Index`] makes an address of it, [`Number::gather`] fetches the numbers that stand there.
 pub trait Number: Real {
+    /// Calls `f` in each lane: for code too large to be compiled once more for every number of lanes. Derivatives through it are
+    /// central differences with step 1e-5.
+    fn call<const K: usize, const M: usize>(f: &dyn Function<K, M>, x: [Self; K]) -> [Self; M];
+
     /// What addresses a table.
     type Index: Index;
 
@@ -39,14 +82,30 @@ pub trait Number: Real {
     /// `a` where the mask is true, `b` elsewhere.
     fn select_index(mask: Self::Mask, a: Self::Index, b: Self::Index) -> Self::Index;
 
-    /// The `K` consecutive numbers of `table` that begin at `at`; `at` is limited to the last place where `K` numbers stand.
+    /// For each of `offsets`, the `K` consecutive numbers of `table` that begin at `at` + offset. `at` is limited to the last place from
+    /// which all of them stand in the table.
     ///
-    /// What is looked up together should stand together. `K` = 4 is what a batch reads fastest by far: four numbers cost it less
-    /// than one does otherwise. Pad three to four, and read eight in two halves.
+    /// What is looked up together should stand together: a batch reads two or four numbers fastest by far, faster than one or three;
+    /// pad those. And what stands at fixed distances, as the corners of a cell do, should be asked for at once.
+    ///
+    /// # Panics
+    /// If `table` has fewer numbers than the largest offset plus `K`.
+    fn gather_each<const K: usize, const M: usize>(
+        table: &[f32],
+        at: Self::Index,
+        offsets: [u32; M],
+    ) -> [[Self; K]; M];
+
+    /// The `K` consecutive numbers of `table` that begin at `at`, which is limited to the last place where `K` numbers stand; see
+    /// [`Number::gather_each`].
     ///
     /// # Panics
     /// If `table` has fewer than `K` numbers.
-    fn gather<const K: usize>(table: &[f32], at: Self::Index) -> [Self; K];
+    #[inline(always)]
+    fn gather<const K: usize>(table: &[f32], at: Self::Index) -> [Self; K] {
+        let [found] = Self::gather_each(table, at, [0]);
+        found
+    }
 
     /// Between which of the nodes 0 … `nodes` − 1 self lies, and how far: (i, t) with self = i + t and t in [0, 1], where self is
     /// limited to [0, `nodes` − 1] and i to `nodes` − 2; (0, 0) for a NaN. 2 ≤ `nodes` ≤ 2²³.
@@ -57,14 +116,14 @@ pub trait Number: Real {
         (i, x - Self::from_index(i))
     }
 
-    /// Applies the opaque function `f` to numbers that are computed in double precision, lane by lane.
-    ///
-    /// For what arithmetic over [`Real`] can't express: searching and addressing a table in memory. Derivatives through it are
-    /// central differences with step 1e-5.
+    /// Applies the opaque function `f` to numbers that are computed in double precision, lane by lane; as [`Number::call`].
+    #[inline]
     fn through<const K: usize, const M: usize>(
         x: [Self; K],
         f: &dyn Fn([f64; K]) -> [f64; M],
-    ) -> [Self; M];
+    ) -> [Self; M] {
+        Self::call(&Through(f), x)
+    }
 }
 
 impl Index for u32 {
@@ -79,6 +138,10 @@ impl Index for u32 {
     #[inline(always)]
     fn times(self, factor: u32) -> Self {
         self.wrapping_mul(factor)
+    }
+    #[inline(always)]
+    fn least(self, limit: u32) -> Self {
+        self.min(limit)
     }
 }
 
@@ -99,11 +162,18 @@ macro_rules! scalar_index {
             if mask { a } else { b }
         }
         #[inline(always)]
-        fn gather<const K: usize>(table: &[f32], at: u32) -> [Self; K] {
-            let found = gather::window::<K>(table, at);
-            let mut y = [0.0; K];
-            for k in 0..K {
-                y[k] = <$t>::from(found[k]);
+        fn gather_each<const K: usize, const M: usize>(
+            table: &[f32],
+            at: u32,
+            offsets: [u32; M],
+        ) -> [[Self; K]; M] {
+            let at = at.min(gather::last::<K, M>(table, offsets));
+            let mut y = [[0.0; K]; M];
+            for m in 0..M {
+                let found = gather::window::<K>(table, at, offsets[m]);
+                for k in 0..K {
+                    y[m][k] = <$t>::from(found[k]);
+                }
             }
             y
         }
@@ -114,11 +184,8 @@ impl Number for f64 {
     scalar_index!(f64);
 
     #[inline]
-    fn through<const K: usize, const M: usize>(
-        x: [Self; K],
-        f: &dyn Fn([f64; K]) -> [f64; M],
-    ) -> [Self; M] {
-        f(x)
+    fn call<const K: usize, const M: usize>(f: &dyn Function<K, M>, x: [Self; K]) -> [Self; M] {
+        f.double(x)
     }
 }
 
@@ -126,20 +193,8 @@ impl Number for f32 {
     scalar_index!(f32);
 
     #[inline]
-    fn through<const K: usize, const M: usize>(
-        x: [Self; K],
-        f: &dyn Fn([f64; K]) -> [f64; M],
-    ) -> [Self; M] {
-        let mut input = [0.0; K];
-        for k in 0..K {
-            input[k] = f64::from(x[k]);
-        }
-        let output = f(input);
-        let mut y = [0.0; M];
-        for m in 0..M {
-            y[m] = output[m] as f32;
-        }
-        y
+    fn call<const K: usize, const M: usize>(f: &dyn Function<K, M>, x: [Self; K]) -> [Self; M] {
+        f.single(x)
     }
 }
 
@@ -168,10 +223,34 @@ impl<const N: usize> Index for LaneIndex<N> {
         }
         r
     }
+    #[inline(always)]
+    fn least(self, limit: u32) -> Self {
+        let mut r = self;
+        for lane in 0..N {
+            r.0[lane] = self.0[lane].min(limit);
+        }
+        r
+    }
 }
 
 impl<const N: usize> Number for Lanes<N> {
     type Index = LaneIndex<N>;
+
+    #[inline]
+    fn call<const K: usize, const M: usize>(f: &dyn Function<K, M>, x: [Self; K]) -> [Self; M] {
+        let mut y = [Self([0.0; N]); M];
+        for lane in 0..N {
+            let mut input = [0.0; K];
+            for k in 0..K {
+                input[k] = x[k].0[lane];
+            }
+            let output = f.single(input);
+            for m in 0..M {
+                y[m].0[lane] = output[m];
+            }
+        }
+        y
+    }
 
     #[inline(always)]
     fn index(self, last: u32) -> LaneIndex<N> {
@@ -207,39 +286,12 @@ impl<const N: usize> Number for Lanes<N> {
     }
 
     #[inline(always)]
-    fn gather<const K: usize>(table: &[f32], at: LaneIndex<N>) -> [Self; K] {
-        let mut y = [Self([0.0; N]); K];
-        if K == 4 {
-            let found = gather::four(table, &at.0);
-            each_component!(K, k => { y[k].0 = found[k]; });
-        } else {
-            for lane in 0..N {
-                let found = gather::window::<K>(table, at.0[lane]);
-                for k in 0..K {
-                    y[k].0[lane] = found[k];
-                }
-            }
-        }
-        y
-    }
-
-    #[inline]
-    fn through<const K: usize, const M: usize>(
-        x: [Self; K],
-        f: &dyn Fn([f64; K]) -> [f64; M],
-    ) -> [Self; M] {
-        let mut y = [Self([0.0; N]); M];
-        for lane in 0..N {
-            let mut input = [0.0f32; K];
-            for k in 0..K {
-                input[k] = x[k].0[lane];
-            }
-            let output = f32::through(input, f);
-            for m in 0..M {
-                y[m].0[lane] = output[m];
-            }
-        }
-        y
+    fn gather_each<const K: usize, const M: usize>(
+        table: &[f32],
+        at: LaneIndex<N>,
+        offsets: [u32; M],
+    ) -> [[Self; K]; M] {
+        gather::in_lanes(table, &at.0, offsets)
     }
 }
 
@@ -262,55 +314,59 @@ impl<R: Number, const P: usize> Number for Dual<R, P> {
         R::select_index(mask, a, b)
     }
 
-    /// What a table holds is constant.
-    #[inline(always)]
-    fn gather<const K: usize>(table: &[f32], at: R::Index) -> [Self; K] {
-        let found = R::gather::<K>(table, at);
-        let mut y = [Self::constant(R::zero()); K];
-        for k in 0..K {
-            y[k].value = found[k];
-        }
-        y
-    }
-
-    fn through<const K: usize, const M: usize>(
-        x: [Self; K],
-        f: &dyn Fn([f64; K]) -> [f64; M],
-    ) -> [Self; M] {
-        const STEP: f64 = 1e-5;
-        let mut values = [R::zero(); K];
-        for k in 0..K {
-            values[k] = x[k].value;
-        }
-        let mut y = [Self::constant(R::zero()); M];
-        let output = R::through(values, f);
-        for m in 0..M {
-            y[m].value = output[m];
-        }
-        for k in 0..K {
-            let slope = R::through(values, &|at: [f64; K]| {
+    fn call<const K: usize, const M: usize>(f: &dyn Function<K, M>, x: [Self; K]) -> [Self; M] {
+        let values = x.map(|x| x.value);
+        let slopes = |k: usize| {
+            R::through(values, &|at| {
                 let (mut high, mut low) = (at, at);
                 high[k] += STEP;
                 low[k] -= STEP;
-                let (high, low) = (f(high), f(low));
-                let mut slope = high;
-                for m in 0..M {
-                    slope[m] = (high[m] - low[m]) / (2.0 * STEP);
-                }
-                slope
-            });
-            for m in 0..M {
-                for p in 0..P {
-                    y[m].partials[p] = y[m].partials[p] + slope[m] * x[k].partials[p];
-                }
+                let (high, low) = (f.double(high), f.double(low));
+                std::array::from_fn(|m| (high[m] - low[m]) / (2.0 * STEP))
+            })
+        };
+        chain(x, R::call(f, values), slopes)
+    }
+
+    /// What a table holds is constant.
+    #[inline(always)]
+    fn gather_each<const K: usize, const M: usize>(
+        table: &[f32],
+        at: R::Index,
+        offsets: [u32; M],
+    ) -> [[Self; K]; M] {
+        R::gather_each::<K, M>(table, at, offsets).map(|found| found.map(Self::constant))
+    }
+}
+
+/// Step of the central differences.
+const STEP: f64 = 1e-5;
+
+/// The duals of the values `y` of a function at `x` with the derivatives `slopes(k)` by `x[k]`.
+fn chain<R: Number, const P: usize, const K: usize, const M: usize>(
+    x: [Dual<R, P>; K],
+    y: [R; M],
+    slopes: impl Fn(usize) -> [R; M],
+) -> [Dual<R, P>; M] {
+    let mut out = y.map(Dual::constant);
+    for k in 0..K {
+        let slope = slopes(k);
+        for m in 0..M {
+            for p in 0..P {
+                out[m].partials[p] = out[m].partials[p] + slope[m] * x[k].partials[p];
             }
         }
-        y
     }
+    out
 }
 
 impl Number for Expr {
     type Index = u32;
+
+    /// 0: an opaque function can't be recorded. [`crate::record`] refuses models that would call it.
+    fn call<const K: usize, const M: usize>(_f: &dyn Function<K, M>, _x: [Self; K]) -> [Self; M] {
+        [Self::zero(); M]
+    }
 
     fn index(self, _last: u32) -> u32 {
         0
@@ -325,15 +381,11 @@ impl Number for Expr {
     }
 
     /// 0: memory can't be recorded. [`crate::record`] refuses models that would read it.
-    fn gather<const K: usize>(_table: &[f32], _at: u32) -> [Self; K] {
-        [Self::zero(); K]
-    }
-
-    /// 0: an opaque function can't be recorded. [`crate::record`] refuses models that would call it.
-    fn through<const K: usize, const M: usize>(
-        _x: [Self; K],
-        _f: &dyn Fn([f64; K]) -> [f64; M],
-    ) -> [Self; M] {
-        [Self::zero(); M]
+    fn gather_each<const K: usize, const M: usize>(
+        _table: &[f32],
+        _at: u32,
+        _offsets: [u32; M],
+    ) -> [[Self; K]; M] {
+        [[Self::zero(); K]; M]
     }
 }

@@ -54,12 +54,15 @@ fn addresses_are_limited_to_the_table() {
     assert_eq!(f32::gather::<3>(&TABLE, 1), [3.0, 2.0, 8.0]);
     assert_eq!(f64::gather::<3>(&TABLE, 6), [0.5, 0.25, 7.0]);
     assert_eq!(f64::gather::<8>(&TABLE, u32::MAX), TABLE.map(f64::from));
+    // All of them must stand in the table: at most 2 + 4 + 2.
+    let found = f32::gather_each::<2, 2>(&TABLE, 7, [4, 0]);
+    assert_eq!(found, [[0.25, 7.0], [2.0, 8.0]]);
     // Arithmetic wraps instead of panicking.
     assert_eq!(u32::MAX.plus(3).times(u32::MAX), 0u32.wrapping_sub(2));
 }
 
 #[test]
-#[should_panic(expected = "a table of 8 numbers has no 9")]
+#[should_panic(expected = "a table of 8 numbers has no 9 at 0")]
 fn a_table_that_is_too_short_is_refused() {
     let _ = Lanes::<8>::gather::<9>(&TABLE, LaneIndex::splat(0));
 }
@@ -72,8 +75,14 @@ fn groups<R: Number>(x: R) -> R {
     for found in R::gather::<1>(&TABLE, i) {
         sum = sum + found;
     }
+    for (k, found) in R::gather::<2>(&TABLE, i).into_iter().enumerate() {
+        sum = sum + found * R::lit(30.0 + k as f64);
+    }
     for (k, found) in R::gather::<3>(&TABLE, i).into_iter().enumerate() {
         sum = sum + found * R::lit(10.0 + k as f64);
+    }
+    for (m, [a, b]) in R::gather_each(&TABLE, i, [5, 0, 2]).into_iter().enumerate() {
+        sum = sum + (a - b) * R::lit(1000.0 + m as f64);
     }
     for (k, found) in R::gather::<4>(&TABLE, i.times(3)).into_iter().enumerate() {
         sum = sum + found * R::lit(100.0 + k as f64);

@@ -86,6 +86,13 @@ pub(super) struct Plan {
 
 impl Plan {
     pub fn new(source: &Source, format: &Format, target: &Target) -> Result<Self, BrdfError> {
+        if format.name == "rgl" {
+            return Err(unsupported(format!(
+                "{}: a file of the format rgl holds an adaptive table, which is copied from a file that has one and not made of anything else; \
+                 gonio holds every other layout, merl and utia hold RGB on regular angles, radiance patches and trees",
+                source.name()
+            )));
+        }
         let isotropic = source.is_isotropic();
         let own = source
             .measurement()

@@ -7,7 +7,7 @@
 //! | `gonio.version` | uint8, 1 | 1 |
 //! | `channels` | text | one name a line: `red`, `green`, `blue`, `x`, `y`, `z`, `luminance`, `550 nm`, or a band |
 //! | `name`, `description`, `author`, `instrument`, `date`, `licence`, `quantity`, `unit`, `provenance` | text | each may be missing |
-//! | `S.layout` | text | `half-difference`, `half-difference-anisotropic`, `spherical`, `spherical-anisotropic`, `klems`, `tensor-tree` |
+//! | `S.layout` | text | `half-difference`, `half-difference-anisotropic`, `spherical`, `spherical-anisotropic`, `klems`, `tensor-tree`, `adaptive` |
 //! | `S.values` | float32, nodes of each axis × channels | of a grid; sr⁻¹, NaN where missing |
 //! | `S.AXIS` | float64, nodes | of each axis of a grid (`theta_h`, `phi_i` …): radians, increasing |
 //! | `S.AXIS.boundary` | text | `clamped`, `periodic` or `mirrored` |
@@ -19,11 +19,15 @@
 //! | `S.values` | float32, outgoing × incoming × channels | of patches |
 //! | `S.children` | float64, branches × 2^rank | of a tree: a branch's number, or −1 − a leaf's |
 //! | `S.values` | float32, leaves × channels | of a tree |
+//! | `S.phi_i`, `S.theta_i`, `S.ndf`, `S.sigma`, `S.vndf`, `S.luminance`, `S.jacobian` | as in [`rgl`](super::rgl) | of an adaptive table |
+//! | `S.values` | float32, φ × θ × channels × height × width | of an adaptive table |
 //! | `S.uncertainty` | float32, as `S.values` | standard uncertainty in sr⁻¹; may be missing |
 //!
 //! Values are mapped into memory, not copied.
 
+use super::super::adaptive::{Adaptive, Fields};
 use super::super::channel::Channel;
+use super::super::file::Fault;
 use super::super::grid::{Axis, Boundary, Grid, Parameterization, Scale};
 use super::super::input::{Input, MOST_VALUES};
 use super::super::klems::{Basis, Klems};
@@ -174,6 +178,11 @@ impl Reader<'_, '_> {
         let data = match layout {
             "klems" => self.klems(side, channels)?,
             "tensor-tree" => self.tree(side, channels)?,
+            "adaptive" if side.transmits() => {
+                let expected = "a layout by directions: light that passes has no half vector";
+                return Err(self.wrong(&of("layout"), "`adaptive`", expected));
+            }
+            "adaptive" => self.adaptive(side, channels)?,
             name => match Parameterization::from_name(name) {
                 Some(p) if p.is_half() && side.transmits() => {
                     let expected = "a layout by directions: light that passes has no half vector";
@@ -185,7 +194,7 @@ impl Reader<'_, '_> {
                     return Err(self.wrong(
                         &of("layout"),
                         format!("`{name}`"),
-                        format!("{}, klems, tensor-tree", names.join(", ")),
+                        format!("{}, klems, tensor-tree, adaptive", names.join(", ")),
                     ));
                 }
             },
@@ -203,6 +212,27 @@ impl Reader<'_, '_> {
             data,
             uncertainty,
         })
+    }
+
+    fn adaptive(&self, side: Side, channels: usize) -> Result<Data, BrdfError> {
+        let prefix = format!("{}.", side.name());
+        let fields = Fields {
+            input: self.input,
+            file: &self.file,
+            prefix: &prefix,
+        };
+        let at = |fault: Fault| fault.at(self.input.path());
+        let tables = fields.tables().map_err(at)?;
+        let shape = [
+            tables.phi_i.len(),
+            tables.theta_i.len(),
+            channels,
+            tables.luminance.height,
+            tables.luminance.width,
+        ];
+        let values = self.values(&format!("{prefix}values"), &shape)?;
+        let data = Adaptive::checked(tables, channels, values);
+        Ok(Data::Adaptive(data.map_err(at)?))
     }
 
     fn axis(&self, name: &str) -> Result<Axis, BrdfError> {
@@ -366,6 +396,18 @@ pub fn write(path: &Path, measurement: &Measurement) -> Result<(), BrdfError> {
                 let n = 1 << tree.rank();
                 file.f64s(&of("children"), &[codes.len() / n, n], &codes);
                 vec![tree.leaves().len() / tree.channels(), tree.channels()]
+            }
+            Data::Adaptive(data) => {
+                text(&mut file, &of("layout"), "adaptive");
+                let tables = data.tables();
+                tables.write(&mut file, &of(""));
+                vec![
+                    tables.phi_i.len(),
+                    tables.theta_i.len(),
+                    data.channels(),
+                    tables.luminance.height,
+                    tables.luminance.width,
+                ]
             }
         };
         file.f32s(&of("values"), &shape, component.data.values());

@@ -5,6 +5,7 @@ pub mod container;
 pub mod merl;
 pub mod pbrt;
 pub mod radiance;
+pub mod rgl;
 mod text;
 pub mod utia;
 
@@ -47,6 +48,16 @@ pub const FORMATS: &[Format] = &[
         detect: container::detect,
         parse: container::parse,
         write: container::write,
+        mapped: true,
+    },
+    Format {
+        name: "rgl",
+        extension: "bsdf",
+        summary: "RGL database: adaptive parameterization, RGB or spectral",
+        told_by: "a tensor_file with the fields theta_i and vndf",
+        detect: rgl::detect,
+        parse: rgl::parse,
+        write: rgl::write,
         mapped: true,
     },
     Format {

@@ -83,7 +83,7 @@ fn structure(measurement: &Measurement) -> Result<&'static str, BrdfError> {
         Data::Klems(_) => Some("Columns"),
         Data::TensorTree(tree) if tree.rank() == 3 => Some("TensorTree3"),
         Data::TensorTree(_) => Some("TensorTree4"),
-        Data::Grid(_) => None,
+        Data::Grid(_) | Data::Adaptive(_) => None,
     });
     let first = all.next().flatten();
     match first {
@@ -193,7 +193,7 @@ fn write_block(out: &mut Out, name: &str, band: Band, side: Side, data: &Data) -
             write_tree(out, tree, band, 0)?;
             writeln!(out)?;
         }
-        Data::Grid(_) => {}
+        Data::Grid(_) | Data::Adaptive(_) => {}
     }
     writeln!(
         out,
