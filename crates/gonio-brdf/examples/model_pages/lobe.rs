@@ -124,7 +124,8 @@ impl Axis {
         if self.most == 0.0 {
             rings.clear();
         } else if self.cube_root {
-            let mut value = round_down_to_decade(self.most * 0.7);
+            // Not so near the outer ring that their labels touch.
+            let mut value = round_down_to_decade(self.most * 0.6);
             while self.radius(value) > 0.15 {
                 rings.push(value);
                 value /= 10.0;

@@ -22,23 +22,40 @@ pub fn folder() -> PathBuf {
 /// # Errors
 /// A model whose source has no comment above its structure, or that fails its check, in words.
 pub fn pages() -> Result<Vec<(String, String)>, String> {
-    let mut pages = vec![("README.md".to_owned(), index())];
     let variants = showcase();
-    for info in registry::models() {
-        let example = variants.iter().find(|spec| spec.name == info.name);
-        let picture = example
-            .map(picture::draw)
-            .transpose()
-            .map_err(|e| format!("{}: {e}", info.name))?;
-        pages.push((
-            format!("{}.md", info.name),
-            page(info, example, picture.as_ref())?,
-        ));
-        if let Some(picture) = picture {
-            pages.push((format!("{}.svg", info.name), picture.svg));
-        }
-    }
+    let models: Vec<_> = registry::models()
+        .iter()
+        .map(|info| (info, variants.iter().find(|spec| spec.name == info.name)))
+        .collect();
+    // The checks take their time: the even models beside the odd ones.
+    let every_second = |first: usize| {
+        let chosen = models.iter().skip(first).step_by(2);
+        chosen
+            .map(|(info, example)| files(info, *example))
+            .collect::<Result<Vec<_>, _>>()
+    };
+    let (even, odd) = std::thread::scope(|scope| {
+        let odd = scope.spawn(|| every_second(1));
+        (every_second(0), odd.join())
+    });
+    let odd = odd.map_err(|_| "a check panicked".to_owned())?;
+    let mut pages = vec![("README.md".to_owned(), index())];
+    pages.extend(even?.into_iter().chain(odd?).flatten());
     Ok(pages)
+}
+
+/// The page of a model and its picture. A table has no example, so no picture: it comes from a file.
+fn files(info: &ModelInfo, example: Option<&ModelSpec>) -> Result<Vec<(String, String)>, String> {
+    let picture = example
+        .map(picture::draw)
+        .transpose()
+        .map_err(|e| format!("{}: {e}", info.name))?;
+    let page = page(info, example, picture.as_ref())?;
+    let mut files = vec![(format!("{}.md", info.name), page)];
+    if let Some(picture) = picture {
+        files.push((format!("{}.svg", info.name), picture.svg));
+    }
+    Ok(files)
 }
 
 fn index() -> String {
@@ -52,7 +69,6 @@ fn index() -> String {
     text + "\nHow a model is written on a command line or in a scene: [Describing a model](../describing-a-model.md).\n"
 }
 
-/// The page of a model. A table has no example: it comes from a file.
 fn page(
     info: &ModelInfo,
     example: Option<&ModelSpec>,

@@ -21,8 +21,9 @@ const STYLE: &str = "\
 text{font:13px system-ui,'Segoe UI',Roboto,Helvetica,Arial,sans-serif;fill:#3c4248;paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}\
 .ground{fill:#fff;stroke:#d8dce0}.inside{fill:#eef2f5}.grid{fill:none;stroke:#ccd1d6}.axis{fill:none;stroke:#3c4248;stroke-width:1.5}\
 .small{font-size:11px;fill:#6a727a}.lobe{fill-opacity:.1;stroke-width:1.8;stroke-linejoin:round}.ray{fill:none;stroke-width:1.2}\
-.to{stroke-dasharray:2 4}.arrow{fill:none;stroke-width:2}.head{stroke:none}\
+.to{stroke-dasharray:1 5}.arrow{fill:none;stroke-width:2}.head{stroke:none}\
 .a{stroke:#0072b2;fill:#0072b2}.b{stroke:#d55e00;fill:#d55e00}.c{stroke:#009e73;fill:#009e73}\
+.lobe.b{stroke-dasharray:9 4}.lobe.c{stroke-dasharray:3.5 2.5}\
 @media(prefers-color-scheme:dark){text{fill:#d5dade;stroke:#1d2125}.ground{fill:#1d2125;stroke:#3a4046}.inside{fill:#262c32}\
 .grid{stroke:#444b52}.axis{stroke:#d5dade}.small{fill:#9aa3ab}\
 .a{stroke:#56b4e9;fill:#56b4e9}.b{stroke:#f0894a;fill:#f0894a}.c{stroke:#2cc79a;fill:#2cc79a}}";
@@ -90,7 +91,11 @@ fn svg(spec: &ModelSpec, lobes: &[Lobe], axis: Axis, transmits: bool) -> String 
         discrete(&mut out, colour, lobe);
         to_viewer(&mut out, colour, viewer);
     }
-    ring_labels(&mut out, axis);
+    scale(&mut out, axis);
+    if transmits {
+        let x = WIDTH - 20.0;
+        text(&mut out, "small", "end", (x, CENTRE.1 + 40.0), "inside");
+    }
     legend(&mut out, lobes, bottom + 18.0);
     out + "</svg>\n"
 }
@@ -187,25 +192,21 @@ fn surface(out: &mut String) {
             head(0.0, RADIUS)
         ),
     );
+    text(out, "", "start", (x + 8.0, y - RADIUS + 24.0), "n");
 }
 
-/// The values of the rings, below the horizon on the side of the mirror direction.
-fn ring_labels(out: &mut String, axis: Axis) {
-    let mut last = f64::INFINITY;
+/// The values of the rings, below the horizon on the side of the mirror direction; in the corner what they are.
+fn scale(out: &mut String, axis: Axis) {
     for value in axis.rings() {
-        let radius = RADIUS * axis.radius(value);
-        // Labels that would touch are left out.
-        if last - radius < 30.0 || radius < 20.0 {
-            continue;
-        }
-        last = radius;
-        text(
-            out,
-            "small",
-            "middle",
-            (CENTRE.0 - radius, CENTRE.1 + 15.0),
-            &significant(value, 3),
-        );
+        let x = CENTRE.0 - RADIUS * axis.radius(value);
+        let label = significant(value, 3);
+        text(out, "small", "middle", (x, CENTRE.1 + 15.0), &label);
+    }
+    if axis.most > 0.0 {
+        text(out, "", "start", (20.0, 30.0), "f |cosθi| in sr⁻¹");
+    }
+    if axis.cube_root {
+        text(out, "small", "start", (20.0, 48.0), "radius: cube root");
     }
 }
 

@@ -20,7 +20,7 @@ pub fn section(info: &ModelInfo, example: &ModelSpec) -> Result<String, String> 
     let report = report(example)?;
     let mut text = format!(
         "\n## Verdicts\n\n`gonio brdf check` with `--effort quick` on `{example}`; [Verification](../verification.md) says what each \
-         figure is. Figures have three digits.\n\n| property | outcome | figure | bound |\n|---|---|---|---|\n"
+         figure is. Figures are rounded.\n\n| property | outcome | figure | bound |\n|---|---|---|---|\n"
     );
     for verdict in &report.verdicts {
         text += &row(verdict);
@@ -34,7 +34,7 @@ pub fn section(info: &ModelInfo, example: &ModelSpec) -> Result<String, String> 
         rows += &format!("| `{}` |", alias.name);
         for property in OF_ALIASES {
             rows += &match report.verdict(property) {
-                Some(verdict) => format!(" {} {} |", mark(verdict.outcome), figure(verdict)),
+                Some(verdict) => format!(" {} |", in_short(verdict)),
                 None => " |".to_owned(),
             };
         }
@@ -60,28 +60,35 @@ fn report(spec: &ModelSpec) -> Result<Report, String> {
 }
 
 fn row(verdict: &Verdict) -> String {
+    // A p-value passes above its bound, everything else up to it.
+    let bound = match (verdict.p_value.is_some(), number(verdict.bound)) {
+        (_, tiny) if tiny.starts_with('<') => tiny,
+        (true, p) => format!("≥ {p}"),
+        (false, most) => format!("≤ {most}"),
+    };
     let outcome = match verdict.outcome {
         Outcome::Pass => "pass",
         Outcome::Fail => "FAIL",
-        Outcome::Declared => "declared to be missing",
+        Outcome::Declared => "missing, as declared",
         // The detail says why, without a number.
         Outcome::NotApplicable => {
             return format!("| {} | n/a: {} | | |\n", verdict.property, verdict.detail);
         }
     };
     format!(
-        "| {} | {} {outcome} | {} | {} {} |\n",
+        "| {} | {} {outcome} | {} | {bound} |\n",
         verdict.property,
         mark(verdict.outcome),
-        figure(verdict),
-        // A p-value passes above its bound, everything else below.
-        if verdict.p_value.is_some() {
-            "≥"
-        } else {
-            "≤"
-        },
-        number(verdict.bound)
+        figure(verdict)
     )
+}
+
+fn in_short(verdict: &Verdict) -> String {
+    if verdict.outcome == Outcome::NotApplicable {
+        "n/a".into()
+    } else {
+        format!("{} {}", mark(verdict.outcome), figure(verdict))
+    }
 }
 
 fn mark(outcome: Outcome) -> &'static str {
@@ -95,17 +102,16 @@ fn mark(outcome: Outcome) -> &'static str {
 
 fn figure(verdict: &Verdict) -> String {
     match verdict.p_value {
-        Some(p) => format!("p = {}", number(p)),
-        None if verdict.outcome == Outcome::NotApplicable => String::new(),
+        Some(p) => format!("p = {}", significant(p, 3)),
         None => number(verdict.figure),
     }
 }
 
-/// Three digits; what is only rounding has none.
+/// Five digits at most; what is only rounding has none.
 fn number(x: f64) -> String {
     if x > 0.0 && x < 1e-9 {
         "< 1e-9".into()
     } else {
-        significant(x, 3)
+        significant(x, 5)
     }
 }

@@ -6,6 +6,7 @@ pub fn significant(x: f64, digits: usize) -> String {
     match rounded.parse::<f64>() {
         // Displayed with the fewest digits that give the same number.
         Ok(value) if value == 0.0 || (1e-4..1e6).contains(&value.abs()) => format!("{value}"),
-        _ => rounded,
+        Ok(value) => format!("{value:e}"),
+        Err(_) => rounded,
     }
 }
