@@ -3,7 +3,6 @@
 use super::lobe::{Axis, Lobe, VIEWERS, direction};
 use super::words::significant;
 use gonio_brdf::{Brdf, BrdfError, Model, ModelSpec};
-use std::fmt::Write as _;
 
 /// Radius of the outer ring, in pixels.
 const RADIUS: f64 = 200.0;
@@ -19,13 +18,13 @@ const COLOURS: [&str; VIEWERS.len()] = ["a", "b", "c"];
 /// Colours that differ to all eyes (Okabe & Ito 2008), on a ground of their own, light or dark as the reader has it.
 const STYLE: &str = "\
 text{font:13px system-ui,'Segoe UI',Roboto,Helvetica,Arial,sans-serif;fill:#3c4248;paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}\
-.ground{fill:#fff;stroke:#d8dce0}.inside{fill:#eef2f5}.grid{fill:none;stroke:#ccd1d6}.axis{fill:none;stroke:#3c4248;stroke-width:1.5}\
-.small{font-size:11px;fill:#6a727a}.lobe{fill-opacity:.1;stroke-width:1.8;stroke-linejoin:round}.ray{fill:none;stroke-width:1.2}\
-.to{stroke-dasharray:1 5}.arrow{fill:none;stroke-width:2}.head{stroke:none}\
+.ground{fill:#fff;stroke:#d8dce0}.other{fill:#eef2f5}.grid{fill:none;stroke:#ccd1d6}.axis{fill:none;stroke:#3c4248;stroke-width:1.5}\
+.small{font-size:11px;fill:#6a727a}.lobe{fill-opacity:.1;stroke-width:1.8;stroke-linejoin:round}.ray{fill:none;stroke-width:1.2;stroke-dasharray:1 5}\
+.arrow{fill:none;stroke-width:2}.head{stroke-width:0}.n{fill:#3c4248}\
 .a{stroke:#0072b2;fill:#0072b2}.b{stroke:#d55e00;fill:#d55e00}.c{stroke:#009e73;fill:#009e73}\
 .lobe.b{stroke-dasharray:9 4}.lobe.c{stroke-dasharray:3.5 2.5}\
-@media(prefers-color-scheme:dark){text{fill:#d5dade;stroke:#1d2125}.ground{fill:#1d2125;stroke:#3a4046}.inside{fill:#262c32}\
-.grid{stroke:#444b52}.axis{stroke:#d5dade}.small{fill:#9aa3ab}\
+@media(prefers-color-scheme:dark){text{fill:#d5dade;stroke:#1d2125}.ground{fill:#1d2125;stroke:#3a4046}.other{fill:#262c32}\
+.grid{stroke:#444b52}.axis{stroke:#d5dade}.n{fill:#d5dade}.small{fill:#9aa3ab}\
 .a{stroke:#56b4e9;fill:#56b4e9}.b{stroke:#f0894a;fill:#f0894a}.c{stroke:#2cc79a;fill:#2cc79a}}";
 
 /// The picture of a model, and the caption below it.
@@ -67,7 +66,7 @@ fn caption(spec: &ModelSpec, lobes: &[Lobe], axis: Axis, transmits: bool) -> Str
         text += "A thick arrow is a discrete direction: towards the light, with the share of its radiance that reaches the viewer. ";
     }
     if transmits {
-        text += "The viewers are outside; below the surface is light from inside. ";
+        text += "Below the horizon is light that comes through from the other side. ";
     }
     text.trim_end().to_owned()
 }
@@ -94,105 +93,72 @@ fn svg(spec: &ModelSpec, lobes: &[Lobe], axis: Axis, transmits: bool) -> String 
     scale(&mut out, axis);
     if transmits {
         let x = WIDTH - 20.0;
-        text(&mut out, "small", "end", (x, CENTRE.1 + 40.0), "inside");
+        text(&mut out, "small", "end", (x, CENTRE.1 + 40.0), "other side");
     }
     legend(&mut out, lobes, bottom + 18.0);
     out + "</svg>\n"
 }
 
-/// Rings of equal values, and a spoke every 10° with its angle every 30°.
+/// Rings of equal values, and a tick every 10°, as a spoke with its angle every 30°.
 fn grid(out: &mut String, axis: Axis, transmits: bool) {
-    let (x, y) = CENTRE;
-    let end = if transmits { 270 } else { 90 };
-    if transmits {
-        let (left, right) = (place(-90.0, RADIUS), place(90.0, RADIUS));
-        line(
-            out,
-            &format!(
-                "<path class=\"inside\" d=\"M{}A{RADIUS} {RADIUS} 0 0 0 {}Z\"/>",
-                point(left),
-                point(right)
-            ),
-        );
-    }
-    let rings = axis.rings();
-    let radii = if rings.is_empty() {
-        vec![RADIUS]
-    } else {
-        rings.iter().map(|&v| RADIUS * axis.radius(v)).collect()
+    let (left, right) = (-90.0, 90.0);
+    let half = |radius: f64, clockwise: u8| {
+        let (from, to) = (place(left, radius), place(right, radius));
+        let radius = px(radius);
+        format!(
+            "M{}A{radius} {radius} 0 0 {clockwise} {}",
+            point(from),
+            point(to)
+        )
     };
+    if transmits {
+        path(out, "other", &half(RADIUS, 0));
+    }
+    let mut radii: Vec<f64> = axis.rings().iter().map(|&v| axis.radius(v)).collect();
+    if radii.is_empty() {
+        radii.push(1.0);
+    }
     for radius in radii {
-        line(
-            out,
-            &if transmits {
-                format!(
-                    "<circle class=\"grid\" cx=\"{x}\" cy=\"{y}\" r=\"{}\"/>",
-                    px(radius)
-                )
-            } else {
-                let (left, right) = (place(-90.0, radius), place(90.0, radius));
-                let r = px(radius);
-                format!(
-                    "<path class=\"grid\" d=\"M{}A{r} {r} 0 0 1 {}\"/>",
-                    point(left),
-                    point(right)
-                )
-            },
-        );
+        let mut ring = half(RADIUS * radius, 1);
+        if transmits {
+            ring += &half(RADIUS * radius, 0);
+        }
+        path(out, "grid", &ring);
     }
+    let end = if transmits { 26 } else { 9 };
     let mut ticks = String::new();
-    for tenth in -9..end / 10 {
-        let degrees = f64::from(tenth) * 10.0;
-        let inner = if tenth % 3 == 0 { 0.0 } else { RADIUS - 6.0 };
-        let _ = write!(
-            ticks,
-            "M{}L{}",
-            point(place(degrees, inner)),
-            point(place(degrees, RADIUS))
-        );
+    for tens in -9..=end {
+        let degrees = f64::from(tens * 10);
+        let spoke = tens % 3 == 0;
+        let inner = if spoke { 0.0 } else { RADIUS - 6.0 };
+        ticks += &segment(place(degrees, inner), place(degrees, RADIUS));
+        if spoke {
+            let (x, y) = place(degrees, RADIUS + 14.0);
+            // From the nearer normal, outside or inside.
+            let angle: i32 = if tens > 9 { 18 - tens } else { tens } * 10;
+            let words = format!("{}°", angle.abs());
+            text(out, "small", "middle", (x, y + 4.0), &words);
+        }
     }
-    line(out, &format!("<path class=\"grid\" d=\"{ticks}\"/>"));
-    for tenth in (-9..=end / 10 - 3)
-        .step_by(3)
-        .chain(if transmits { None } else { Some(9) })
-    {
-        let degrees = f64::from(tenth) * 10.0;
-        let (x, y) = place(degrees, RADIUS + 14.0);
-        // From the nearer normal, outside or inside.
-        let angle = if degrees > 90.0 {
-            180.0 - degrees
-        } else {
-            degrees
-        };
-        text(
-            out,
-            "small",
-            "middle",
-            (x, y + 4.0),
-            &format!("{}°", angle.abs()),
-        );
-    }
+    path(out, "grid", &ticks);
 }
 
 /// The horizon and the normal.
 fn surface(out: &mut String) {
-    let (x, y) = CENTRE;
-    let (left, right) = (px(x - RADIUS), px(x + RADIUS));
-    line(
+    let horizon = segment(place(-90.0, RADIUS), place(90.0, RADIUS));
+    path(
         out,
-        &format!(
-            "<path class=\"axis\" d=\"M{left} {y}H{right}M{x} {y}V{}\"/>",
-            px(y - RADIUS)
-        ),
+        "axis",
+        &(horizon + &segment(CENTRE, place(0.0, RADIUS - 8.0))),
     );
-    line(
+    path(out, "head n", &head(0.0, RADIUS));
+    text(
         out,
-        &format!(
-            "<path d=\"{}\" class=\"axis\" style=\"fill:#777\"/>",
-            head(0.0, RADIUS)
-        ),
+        "label",
+        "start",
+        (CENTRE.0 + 8.0, CENTRE.1 - RADIUS + 24.0),
+        "n",
     );
-    text(out, "", "start", (x + 8.0, y - RADIUS + 24.0), "n");
 }
 
 /// The values of the rings, below the horizon on the side of the mirror direction; in the corner what they are.
@@ -203,7 +169,7 @@ fn scale(out: &mut String, axis: Axis) {
         text(out, "small", "middle", (x, CENTRE.1 + 15.0), &label);
     }
     if axis.most > 0.0 {
-        text(out, "", "start", (20.0, 30.0), "f |cosθi| in sr⁻¹");
+        text(out, "label", "start", (20.0, 30.0), "f |cosθi| in sr⁻¹");
     }
     if axis.cube_root {
         text(out, "small", "start", (20.0, 48.0), "radius: cube root");
@@ -215,90 +181,65 @@ fn curve(out: &mut String, colour: &str, lobe: &Lobe, axis: Axis) {
         return;
     }
     let mut points = vec![CENTRE];
-    points.extend(
-        lobe.curve
-            .iter()
-            .map(|&(degrees, value)| place(degrees, RADIUS * axis.radius(value))),
-    );
+    for &(degrees, value) in &lobe.curve {
+        points.push(place(degrees, RADIUS * axis.radius(value)));
+    }
     points.push(CENTRE);
-    let path: Vec<String> = simplified(&points).into_iter().map(point).collect();
-    line(
+    let points: Vec<String> = simplified(&points).into_iter().map(point).collect();
+    path(
         out,
-        &format!("<path class=\"lobe {colour}\" d=\"M{}Z\"/>", path.join("L")),
+        &format!("lobe {colour}"),
+        &format!("M{}Z", points.join("L")),
     );
 }
 
 fn discrete(out: &mut String, colour: &str, lobe: &Lobe) {
+    let tip = 0.78 * RADIUS;
     for &(degrees, share) in &lobe.discrete {
-        let tip = 0.78 * RADIUS;
-        line(
-            out,
-            &format!(
-                "<path class=\"arrow {colour}\" d=\"M{}L{}\"/>",
-                point(CENTRE),
-                point(place(degrees, tip - 8.0))
-            ),
-        );
-        line(
-            out,
-            &format!(
-                "<path class=\"head {colour}\" d=\"{}\"/>",
-                head(degrees, tip)
-            ),
-        );
+        arrow(out, colour, degrees, 0.0, tip);
         let (x, y) = place(degrees, tip + 20.0);
-        text(out, "", "middle", (x, y + 4.0), &significant(share, 3));
+        text(out, "label", "middle", (x, y + 4.0), &significant(share, 3));
     }
 }
 
 /// The ray to the viewer: dotted across the lobes, an arrow beyond the outer ring.
 fn to_viewer(out: &mut String, colour: &str, viewer: f64) {
-    let (start, tip) = (RADIUS + 6.0, RADIUS + 34.0);
-    line(
+    path(
         out,
-        &format!(
-            "<path class=\"ray to {colour}\" d=\"M{}L{}\"/>",
-            point(CENTRE),
-            point(place(viewer, RADIUS))
-        ),
+        &format!("ray {colour}"),
+        &segment(CENTRE, place(viewer, RADIUS)),
     );
-    line(
-        out,
-        &format!(
-            "<path class=\"arrow {colour}\" d=\"M{}L{}\"/>",
-            point(place(viewer, start)),
-            point(place(viewer, tip - 8.0))
-        ),
-    );
-    line(
-        out,
-        &format!(
-            "<path class=\"head {colour}\" d=\"{}\"/>",
-            head(viewer, tip)
-        ),
-    );
+    let tip = RADIUS + 34.0;
+    arrow(out, colour, viewer, RADIUS + 6.0, tip);
     let (x, y) = place(viewer, tip + 6.0);
-    text(out, "", "start", (x, y + 4.0), &format!("viewer {viewer}°"));
+    text(
+        out,
+        "label",
+        "start",
+        (x, y + 4.0),
+        &format!("viewer {viewer}°"),
+    );
 }
 
 fn legend(out: &mut String, lobes: &[Lobe], y: f64) {
-    for (k, ((colour, lobe), viewer)) in COLOURS.iter().zip(lobes).zip(VIEWERS).enumerate() {
-        let x = 32.0 + 200.0 * k as f64;
-        let words = if lobe.peak() > 0.0 {
-            format!("θr = {viewer}°: up to {}", significant(lobe.peak(), 3))
-        } else {
-            format!("θr = {viewer}°")
-        };
-        line(
-            out,
-            &format!(
-                "<path class=\"lobe {colour}\" d=\"M{} {}h22\"/>",
-                px(x),
-                px(y - 4.0)
-            ),
-        );
-        text(out, "", "start", (x + 28.0, y), &words);
+    let mut x = 32.0;
+    for ((colour, lobe), viewer) in COLOURS.iter().zip(lobes).zip(VIEWERS) {
+        let mut words = format!("θr = {viewer}°");
+        if lobe.peak() > 0.0 {
+            words += &format!(": up to {}", significant(lobe.peak(), 3));
+        }
+        let sample = segment((x, y - 4.0), (x + 22.0, y - 4.0));
+        path(out, &format!("lobe {colour}"), &sample);
+        text(out, "label", "start", (x + 28.0, y), &words);
+        x += 200.0;
     }
+}
+
+/// An arrow away from the surface's point.
+fn arrow(out: &mut String, colour: &str, degrees: f64, start: f64, tip: f64) {
+    let shaft = segment(place(degrees, start), place(degrees, tip - 8.0));
+    path(out, &format!("arrow {colour}"), &shaft);
+    path(out, &format!("head {colour}"), &head(degrees, tip));
 }
 
 /// The head of an arrow whose tip is at `radius`.
@@ -314,24 +255,19 @@ fn head(degrees: f64, radius: f64) -> String {
     )
 }
 
-fn line(out: &mut String, element: &str) {
-    out.push_str(element);
-    out.push('\n');
+/// The path that draws a straight line.
+fn segment(from: (f64, f64), to: (f64, f64)) -> String {
+    format!("M{}L{}", point(from), point(to))
+}
+
+fn path(out: &mut String, class: &str, d: &str) {
+    *out += &format!("<path class=\"{class}\" d=\"{d}\"/>\n");
 }
 
 fn text(out: &mut String, class: &str, anchor: &str, (x, y): (f64, f64), words: &str) {
-    let class = if class.is_empty() {
-        String::new()
-    } else {
-        format!(" class=\"{class}\"")
-    };
-    line(
-        out,
-        &format!(
-            "<text{class} x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\">{words}</text>",
-            px(x),
-            px(y)
-        ),
+    let (x, y) = (px(x), px(y));
+    *out += &format!(
+        "<text class=\"{class}\" x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\">{words}</text>\n"
     );
 }
 
