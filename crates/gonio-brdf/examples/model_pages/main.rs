@@ -1,5 +1,7 @@
-//! Writes the book's pages about models: `cargo run -p gonio-brdf --example model_pages`.
+//! Writes the book's pages about models, with their pictures: `cargo run -p gonio-brdf --example model_pages`.
 
+// Found as the test of the book finds it, so that its own modules lie beside it.
+#[path = "page.rs"]
 mod page;
 
 fn main() -> Result<(), String> {

@@ -1,6 +1,12 @@
-//! The book's pages about models, made of the registry and of the comments above the formulas.
+//! The book's pages about models, made of the registry, of the comments above the formulas, and of what the models do.
+
+mod lobe;
+mod picture;
+mod verdicts;
+mod words;
 
 use gonio_brdf::{Declares, Kind, ModelInfo, ModelSpec, ParameterInfo, preset, registry, showcase};
+use picture::Picture;
 use std::path::{Path, PathBuf};
 
 /// Said at the top of each page.
@@ -11,16 +17,45 @@ pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../book/src/models")
 }
 
-/// Every page: file name and text.
+/// Every page and picture: file name and text.
 ///
 /// # Errors
-/// A model whose source has no comment above its structure, in words.
+/// A model whose source has no comment above its structure, or that fails its check, in words.
 pub fn pages() -> Result<Vec<(String, String)>, String> {
+    let variants = showcase();
+    let models: Vec<_> = registry::models()
+        .iter()
+        .map(|info| (info, variants.iter().find(|spec| spec.name == info.name)))
+        .collect();
+    // The checks take their time: the even models beside the odd ones.
+    let every_second = |first: usize| {
+        let chosen = models.iter().skip(first).step_by(2);
+        chosen
+            .map(|(info, example)| files(info, *example))
+            .collect::<Result<Vec<_>, _>>()
+    };
+    let (even, odd) = std::thread::scope(|scope| {
+        let odd = scope.spawn(|| every_second(1));
+        (every_second(0), odd.join())
+    });
+    let odd = odd.map_err(|_| "a check panicked".to_owned())?;
     let mut pages = vec![("README.md".to_owned(), index())];
-    for info in registry::models() {
-        pages.push((format!("{}.md", info.name), page(info)?));
-    }
+    pages.extend(even?.into_iter().chain(odd?).flatten());
     Ok(pages)
+}
+
+/// The page of a model and its picture. A table has no example, so no picture: it comes from a file.
+fn files(info: &ModelInfo, example: Option<&ModelSpec>) -> Result<Vec<(String, String)>, String> {
+    let picture = example
+        .map(picture::draw)
+        .transpose()
+        .map_err(|e| format!("{}: {e}", info.name))?;
+    let page = page(info, example, picture.as_ref())?;
+    let mut files = vec![(format!("{}.md", info.name), page)];
+    if let Some(picture) = picture {
+        files.push((format!("{}.svg", info.name), picture.svg));
+    }
+    Ok(files)
 }
 
 fn index() -> String {
@@ -34,8 +69,12 @@ fn index() -> String {
     text + "\nHow a model is written on a command line or in a scene: [Describing a model](../describing-a-model.md).\n"
 }
 
-fn page(info: &ModelInfo) -> Result<String, String> {
-    let file = format!("{}.rs", info.name.replace('-', "_"));
+fn page(
+    info: &ModelInfo,
+    example: Option<&ModelSpec>,
+    picture: Option<&Picture>,
+) -> Result<String, String> {
+    let file = source_file(info);
     let mut text = format!(
         "# {}\n\n{NOTE}\n\n{}.\n\n## Equation\n\n{}\n\nSource: {}.\n\nIn the code: `crates/gonio-brdf/src/model/{file}`. ",
         info.name,
@@ -48,6 +87,12 @@ fn page(info: &ModelInfo) -> Result<String, String> {
     } else {
         "It cannot be written as shader code.\n"
     };
+    if let Some(picture) = picture {
+        text += &format!(
+            "\n## Lobes\n\n![Polar curves of {0}]({0}.svg)\n\n{1}\n",
+            info.name, picture.caption
+        );
+    }
     text += "\n## Parameters\n\n| name | values | default | meaning |\n|---|---|---|---|\n";
     for parameter in info.parameters {
         text += &format!(
@@ -80,7 +125,11 @@ fn page(info: &ModelInfo) -> Result<String, String> {
             text += &format!("| `{}` | {preset} |\n", alias.name);
         }
     }
-    Ok(text + &presets(info) + &declared(info) + &commands(info))
+    let verdicts = match example {
+        Some(example) => verdicts::section(info, example)?,
+        None => String::new(),
+    };
+    Ok(text + &presets(info) + &declared(info) + &verdicts + &commands(info, example))
 }
 
 /// The sets of presets of the model and of its aliases; those that an alias shares with the model once.
@@ -110,6 +159,17 @@ fn presets(info: &ModelInfo) -> String {
         );
     }
     text
+}
+
+/// The model's source in the folder of the models: a file of its name, or the first of a folder of its name.
+fn source_file(info: &ModelInfo) -> String {
+    let name = info.name.replace('-', "_");
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/model");
+    if models.join(&name).is_dir() {
+        format!("{name}/mod.rs")
+    } else {
+        format!("{name}.rs")
+    }
 }
 
 /// The documentation comment of the structure in a model's source: its equation.
@@ -196,9 +256,8 @@ fn declared(info: &ModelInfo) -> String {
     text
 }
 
-fn commands(info: &ModelInfo) -> String {
-    let example = showcase().into_iter().find(|s| s.name == info.name);
-    let Some(example) = example.map(|s| s.to_string()) else {
+fn commands(info: &ModelInfo, example: Option<&ModelSpec>) -> String {
+    let Some(example) = example.map(ModelSpec::to_string) else {
         return format!(
             "\n## Try it\n\nGive a file: `{}:{}=…`, as in [Describing a model](../describing-a-model.md).\n",
             info.name,
