@@ -35,7 +35,7 @@ fn index() -> String {
 }
 
 fn page(info: &ModelInfo) -> Result<String, String> {
-    let file = format!("{}.rs", info.name.replace('-', "_"));
+    let file = source_file(info);
     let mut text = format!(
         "# {}\n\n{NOTE}\n\n{}.\n\n## Equation\n\n{}\n\nSource: {}.\n\nIn the code: `crates/gonio-brdf/src/model/{file}`. ",
         info.name,
@@ -110,6 +110,17 @@ fn presets(info: &ModelInfo) -> String {
         );
     }
     text
+}
+
+/// The model's source in the folder of the models: a file of its name, or the first of a folder of its name.
+fn source_file(info: &ModelInfo) -> String {
+    let name = info.name.replace('-', "_");
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/model");
+    if models.join(&name).is_dir() {
+        format!("{name}/mod.rs")
+    } else {
+        format!("{name}.rs")
+    }
 }
 
 /// The documentation comment of the structure in a model's source: its equation.
