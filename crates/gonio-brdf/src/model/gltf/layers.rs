@@ -4,9 +4,9 @@ use crate::model::components;
 use crate::model::sheen_charlie::{ALPHA_MIN, SheenCharlie, Visibility};
 use crate::part::charlie_albedo::share_below;
 use crate::part::colour::{cast, each_component, grey, largest, mean};
+use crate::part::dielectric;
 use crate::part::distribution::{Distribution, Shape};
 use crate::part::fresnel::{Fresnel, ThinFilm, schlick};
-use crate::part::dielectric;
 use crate::part::geometry::{Half, azimuth, turned};
 use crate::part::masking::{Masking, smith_g1_over_cos, visibility};
 use crate::{BrdfError, ModelSpec};
@@ -148,10 +148,10 @@ impl<R: Real> Film<R> {
     /// The reflectance `plain` of a base whose F₀ is `f0`, mixed with that of the base under the film.
     #[inline(always)]
     pub(super) fn over<const N: usize>(&self, plain: [R; N], f0: [R; N], cos: R) -> [R; N] {
-        // The index of a clear body with this F₀; 0.9999 keeps it finite.
+        // The index of a clear body with this F₀, below 0.998 to keep it finite and 1 − F at full precision.
         let mut eta = f0;
         each_component!(N, k => {
-            let root = f0[k].safe_sqrt().min(R::lit(0.9999));
+            let root = f0[k].safe_sqrt().min(R::lit(0.999));
             eta[k] = (R::one() + root) / (R::one() - root);
         });
         let film = ThinFilm {
@@ -166,6 +166,9 @@ impl<R: Real> Film<R> {
         out
     }
 }
+
+/// The smallest attenuation distance: smaller ones are taken for this one.
+const LEAST_DISTANCE: f64 = 1e-6;
 
 /// KHR_materials_transmission and KHR_materials_volume: what passes the surface.
 #[derive(Debug, Clone, Copy)]
@@ -189,7 +192,7 @@ impl<R: Real, const N: usize> Passage<R, N> {
             solid: super::parameters::is_solid(spec),
             share: spec.real("transmission"),
             attenuation_color: spec.colour("attenuation_color")?,
-            attenuation: R::lit(distance.map_or(0.0, f64::recip)),
+            attenuation: R::lit(distance.map_or(0.0, |d| d.max(LEAST_DISTANCE).recip())),
         })
     }
 
@@ -210,7 +213,7 @@ impl<R: Real, const N: usize> Passage<R, N> {
                 self.share = value[0];
             }
             "attenuation_color" => self.attenuation_color = components(value),
-            _ => self.attenuation = value[0].recip(),
+            _ => self.attenuation = value[0].max(R::lit(LEAST_DISTANCE)).recip(),
         }
     }
 

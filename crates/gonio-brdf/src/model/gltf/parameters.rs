@@ -6,6 +6,9 @@ use crate::{Declares, ModelInfo, ModelSpec, ParameterInfo};
 /// The words of `body`.
 const BODY: &[&str] = &["thin-walled", "solid"];
 
+/// The sheen's albedo is below 1 in all directions from this roughness on.
+const LEAST_SHEEN_ROUGHNESS: f64 = 0.3;
+
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
     name: "gltf",
@@ -111,9 +114,9 @@ pub const INFO: ModelInfo = ModelInfo {
         ParameterInfo::number(
             "attenuation_distance",
             "",
-            (1e-6, 1e6),
+            (0.0, 1e6),
             None,
-            "length after which attenuation_color remains; nothing is absorbed when not given",
+            "length after which attenuation_color remains, not below 1e-6; nothing is absorbed when not given",
         ),
         ParameterInfo::colour(
             "sheen_color",
@@ -161,12 +164,15 @@ fn declares(spec: &ModelSpec) -> Declares {
     // Diffuse and specular are mixed by the Fresnel reflectance of the half vector, which at grazing angles takes less from the
     // diffuse part than the specular part adds: a bright dielectric can reflect more than it gets. Without a diffuse part each facet
     // shares out what it gets. The coat is mixed by the viewer's angle alone: what it sends to grazing viewers is not
-    // taken from the light that the others get.
+    // taken from the light that the others get. Smooth sheen sends up to six times the light that there is to grazing viewers; from
+    // this roughness on at most 0.95.
     let number = |key: &str| spec.real::<f64>(key);
     let transmission = number("transmission");
     let without_diffuse =
         number("metallic") == 1.0 || spec.largest("base_color") == 0.0 || transmission == 1.0;
     let coated = number("clearcoat") > 0.0;
+    let gaining =
+        spec.largest("sheen_color") > 0.0 && number("sheen_roughness") < LEAST_SHEEN_ROUGHNESS;
     let factor = spec
         .rgb("anisotropy_direction")
         .map_or(1.0, |direction| direction[2]);
@@ -179,7 +185,7 @@ fn declares(spec: &ModelSpec) -> Declares {
         reciprocal: !coated,
         isotropic: number("anisotropy") == 0.0 || factor <= 0.0,
         relative_ior: (transmission > 0.0).then_some([relative_ior; 3]),
-        ..Declares::physical(if without_diffuse && !coated {
+        ..Declares::physical(if without_diffuse && !coated && !gaining {
             1.0
         } else {
             f64::INFINITY

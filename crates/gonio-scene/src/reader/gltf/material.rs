@@ -17,7 +17,7 @@ pub(super) struct Materials<'a> {
 
 /// Where a texture is used: its index, its set of coordinates, and its transform.
 #[derive(Clone, Copy)]
-struct Use {
+pub(super) struct Use {
     texture: usize,
     uv_set: u32,
     transform: Option<UvTransform>,
@@ -149,6 +149,7 @@ impl Materials<'_> {
                 (0.0, 100.0),
             )?;
         }
+        let drives = self.layers(&mut spec, source, place)?;
         let mut material = Material::new(name, &spec)?;
         let base = pbr.base_color_texture.as_ref().map(usage);
         self.bind(
@@ -196,6 +197,17 @@ impl Materials<'_> {
                 place,
             )?;
         }
+        for drive in drives {
+            if let Some(texture) = self.texture(Some(drive.used), drive.transfer, place)? {
+                let input = TextureInput {
+                    texture,
+                    channels: drive.channels,
+                    scale: drive.scale,
+                    offset: drive.offset,
+                };
+                material.bind_texture(drive.parameter, input)?;
+            }
+        }
         if vertex_colours {
             material.bind_vertex_colour("base_color")?;
         }
@@ -235,7 +247,7 @@ impl Materials<'_> {
     }
 
     /// Sets a parameter of the model from one or three numbers, limited to its range with a warning.
-    fn set<const N: usize>(
+    pub(super) fn set<const N: usize>(
         &mut self,
         spec: &mut ModelSpec,
         place: &str,
@@ -347,13 +359,13 @@ impl Materials<'_> {
         Ok(used)
     }
 
-    fn warn(&mut self, warning: String) {
+    pub(super) fn warn(&mut self, warning: String) {
         self.warnings.push(warning);
     }
 }
 
 /// How a texture reference uses its texture.
-fn usage(info: &json::texture::Info) -> Use {
+pub(super) fn usage(info: &json::texture::Info) -> Use {
     let transform = info
         .extensions
         .as_ref()
@@ -371,7 +383,10 @@ fn uv_transform(t: &json::extensions::texture::TextureTransform) -> UvTransform 
     UvTransform::new(t.offset.0, t.rotation.0, t.scale.0)
 }
 
-/// The set of texture coordinates that a material's normal map uses, if it has a map.
-pub(super) fn normal_map_uv_set(material: &Material) -> Option<u8> {
-    material.normal_map.as_ref().map(|map| map.texture.uv_set)
+/// The set of texture coordinates that a material needs tangents for: that of its normal map, or the first if it is anisotropic.
+pub(super) fn tangents_uv_set(material: &Material) -> Option<u8> {
+    match &material.normal_map {
+        Some(map) => Some(map.texture.uv_set),
+        None => material.spec().values.get("anisotropy").map(|_| 0),
+    }
 }
