@@ -7,7 +7,7 @@ pub use input::{Channels, TextureInput};
 pub use shading::Shading;
 
 use crate::{SceneError, SurfacePoint, Texture};
-use gonio_brdf::{Brdf, Kind, Model, ModelSpec, ParameterSlot, Value};
+use gonio_brdf::{Brdf, Kind, Model, ModelSpec, ParameterInfo, ParameterSlot, Value};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::{SampleStream, SamplerKind};
 use std::borrow::Cow;
@@ -217,9 +217,11 @@ impl Material {
             Some(Value::Colour(c)) => c.map(|x| x as f32),
             _ => [1.0; 3],
         };
-        // A colour that may exceed 1, such as an absorption coefficient, is no share of light.
-        let is_share = matches!(declared.kind, Kind::Colour { high, .. } if high <= 1.0);
-        if is_share && self.albedo_binding.is_none() {
+        // The first colour of a model is its own; one that may exceed 1, such as an absorption coefficient, is no share of light.
+        let is_colour =
+            |p: &&ParameterInfo| matches!(p.kind, Kind::Colour { high, .. } if high <= 1.0);
+        let own = info.parameters.iter().find(is_colour);
+        if own.is_some_and(|own| own.name == parameter) {
             self.albedo_binding = Some(self.bindings.len());
         }
         self.bindings.push(Binding {
