@@ -69,6 +69,7 @@ fn the_catalogue_away_from_its_defaults() {
         "gltf:clearcoat=1,clearcoat_roughness=0.2,base_color=0.5/0.1/0.1,roughness=0.6",
         "gltf:clearcoat=0.8,clearcoat_roughness=0.3,sheen_color=0.5,sheen_roughness=0.4,transmission=0.5,body=solid,iridescence=0.5",
         "gltf:clearcoat=0.8,clearcoat_roughness=0.3,sheen_color=0.5,sheen_roughness=0.4,transmission=0.5,roughness=0.2",
+        "gltf:clearcoat=1,clearcoat_roughness=0.4,clearcoat_normal=0.3/-0.2/0.9,anisotropy=0.6,rotation_deg=40",
         "blinn-phong@pearl-paint",
         "ward@ngan/black-oxidized-steel",
         "cook-torrance@low-e2/green-fabric",

@@ -7,10 +7,10 @@ use crate::part::colour::{cast, each_component, grey, largest, mean};
 use crate::part::dielectric;
 use crate::part::distribution::{Distribution, Shape};
 use crate::part::fresnel::{Fresnel, ThinFilm, schlick};
-use crate::part::geometry::{Half, azimuth, turned};
+use crate::part::geometry::{Half, above, azimuth, turned};
 use crate::part::masking::{Masking, smith_g1_over_cos, visibility};
 use crate::{BrdfError, ModelSpec};
-use gonio_num::{Real, Vec3};
+use gonio_num::{Frame, Real, Vec3};
 use std::f64::consts::PI;
 
 /// KHR_materials_anisotropy: the direction along which the base's facets are rougher.
@@ -296,6 +296,9 @@ impl<R: Real, const N: usize> Sheen<R, N> {
     }
 }
 
+/// The smallest cosine that a coat's own normal divides by.
+const LEAST_COSINE: f64 = 1e-3;
+
 /// KHR_materials_clearcoat: a clear coat over all the rest.
 #[derive(Debug, Clone, Copy)]
 pub struct Coat<R: Real> {
@@ -305,6 +308,8 @@ pub struct Coat<R: Real> {
     pub strength: R,
     /// GGX of alpha = roughness².
     pub distribution: Distribution<R>,
+    /// The frame of its normal, where that isn't the base's.
+    pub frame: Option<Frame<R>>,
 }
 
 impl<R: Real> Coat<R> {
@@ -313,8 +318,14 @@ impl<R: Real> Coat<R> {
             on: spec.real::<f64>("clearcoat") > 0.0,
             strength: spec.real("clearcoat"),
             distribution: Distribution::isotropic(Shape::Ggx, R::one()),
+            frame: None,
         };
-        new.set("clearcoat_roughness", spec.real("clearcoat_roughness"));
+        new.set("clearcoat_roughness", [spec.real("clearcoat_roughness"); 3]);
+        if let Some(normal) = spec.rgb("clearcoat_normal")
+            && spec.values.contains_key("clearcoat_normal")
+        {
+            new.set("clearcoat_normal", normal.map(R::lit));
+        }
         new
     }
 
@@ -323,36 +334,79 @@ impl<R: Real> Coat<R> {
             on: self.on,
             strength: f(self.strength),
             distribution: self.distribution.cast(f),
+            frame: self.frame.map(|frame| {
+                let over = |v: Vec3<R>| Vec3::new(f(v.x), f(v.y), f(v.z));
+                Frame {
+                    s: over(frame.s),
+                    t: over(frame.t),
+                    n: over(frame.n),
+                }
+            }),
         }
     }
 
-    pub(super) fn set(&mut self, parameter: &str, x: R) {
-        if parameter == "clearcoat" {
-            self.on = true;
-            self.strength = x;
-        } else {
-            self.distribution.set_alpha(x * x, x * x);
+    pub(super) fn set(&mut self, parameter: &str, value: [R; 3]) {
+        let x = value[0];
+        match parameter {
+            "clearcoat" => {
+                self.on = true;
+                self.strength = x;
+            }
+            "clearcoat_roughness" => self.distribution.set_alpha(x * x, x * x),
+            _ => {
+                // On the outer side, whatever is given.
+                let z = value[2].max(R::lit(1e-3));
+                let normal = Vec3::new(x, value[1], z).normalize();
+                self.frame = Some(Frame::from_normal(normal));
+            }
         }
     }
 
-    /// The coat's share in the mix with what it covers, by the viewer's cosine: its strength times Schlick's reflectance of glass.
+    /// A direction in the frame of the coat's normal.
     #[inline(always)]
-    pub(super) fn share(&self, cos: R) -> R {
+    fn local(&self, w: Vec3<R>) -> Vec3<R> {
+        match &self.frame {
+            Some(frame) => frame.to_local(w),
+            None => w,
+        }
+    }
+
+    /// The coat's share in the mix with what it covers, for a viewer: its strength times Schlick's reflectance of glass.
+    #[inline(always)]
+    pub(super) fn share(&self, wo: Vec3<R>) -> R {
+        let cos = self.local(wo).z.abs();
         self.strength * schlick(cos.saturate(), R::lit(0.04), R::one())
     }
 
-    /// D V, and the density of [`Coat::draw`].
+    /// D V, and the density of [`Coat::draw`]. A coat with its own normal N reflects as that has it: D V |N·ωi|/cosθi.
     #[inline(always)]
     pub(super) fn lobe(&self, wi: Vec3<R>, wo: Vec3<R>, half: &Half<R>) -> (R, R) {
+        let (i, o) = (self.local(wi), self.local(wo));
+        let half = Half {
+            h: self.local(half.h),
+            cos: half.cos,
+        };
         let d = self.distribution.density(half.h);
-        let f = d * visibility(Masking::Smith, &self.distribution, wi, wo, half);
-        let density = R::lit(0.25) * d * smith_g1_over_cos(&self.distribution, wo);
+        let mut f = d * visibility(Masking::Smith, &self.distribution, i, o, &half);
+        let mut density = R::lit(0.25) * d * smith_g1_over_cos(&self.distribution, o);
+        if self.frame.is_some() {
+            let faces = above(i, o);
+            f = R::select(faces, f * i.z / wi.z.max(R::lit(LEAST_COSINE)), R::zero());
+            density = R::select(faces, density, R::zero());
+        }
         (f, density)
     }
 
     /// A direction mirrored by one of the facets that the viewer sees.
     #[inline(always)]
     pub(super) fn draw(&self, wo: Vec3<R>, u: [R; 2]) -> Vec3<R> {
-        wo.reflect(self.distribution.sample_visible_ggx(wo, u[0], u[1]))
+        let o = self.local(wo);
+        // From behind the coat's normal nothing is drawn: the density is 0.
+        let front = Vec3::new(o.x, o.y, o.z.abs());
+        let wi = o.reflect(self.distribution.sample_visible_ggx(front, u[0], u[1]));
+        match &self.frame {
+            Some(frame) => frame.to_world(wi),
+            None => wi,
+        }
     }
 }

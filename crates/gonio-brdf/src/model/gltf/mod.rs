@@ -35,9 +35,10 @@ use whole::EvalWhole;
 ///   critical angle; the body absorbs σ = −ln(attenuation_color)/attenuation_distance
 /// - sheen: f = sheen + f min(1 − max(s) E(ωi), 1 − max(s) E(ωr)), with the fibres of [`SheenCharlie`](super::sheen_charlie::SheenCharlie), s their colour and E
 ///   their albedo
-/// - clearcoat: f = mix(f, S, k), k = clearcoat · (0.04 + 0.96 (1 − cosθr)⁵), S with the coat's roughness; by the viewer's angle alone, so it isn't reciprocal
+/// - clearcoat: f = mix(f, S, k), k = clearcoat · (0.04 + 0.96 (1 − cosθr)⁵), S with the coat's roughness; by the viewer's angle alone, so it isn't reciprocal.
+///   A coat with a normal N of its own has cosθr = |N·ωr| and S |N·ωi|/cosθi
 ///
-/// Sheen and clear coat lie outside of a body, and on both sides of a thin wall. The film borders on air and the coat has the normal of the base.
+/// Sheen and clear coat lie outside of a body, and on both sides of a thin wall. The film borders on air.
 /// A material that transmits is a function of both sides; any other is 0 below the horizon.
 ///
 /// Sampling: one part by its share of the albedo (the cosine for diffuse, visible normals for facets and coat, the sheen's own lobe), then
@@ -127,7 +128,9 @@ impl<R: Real, const N: usize> Gltf<R, N> {
                 self.film.set(parameter, x);
             }
             "sheen_color" | "sheen_roughness" => self.sheen.set(parameter, value),
-            "clearcoat" | "clearcoat_roughness" => self.coat.set(parameter, x),
+            "clearcoat" | "clearcoat_roughness" | "clearcoat_normal" => {
+                self.coat.set(parameter, value);
+            }
             _ => self.passage.set(parameter, value),
         }
     }

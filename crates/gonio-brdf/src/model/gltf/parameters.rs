@@ -145,6 +145,12 @@ pub const INFO: ModelInfo = ModelInfo {
             Some(0.0),
             "perceptual roughness of the clear coat; alpha = clearcoat_roughness², not below 1e-4",
         ),
+        ParameterInfo::colour(
+            "clearcoat_normal",
+            (-1.0, 1.0),
+            Some([0.0, 0.0, 1.0]),
+            "x, y and z of the coat's normal beside that of the base, which is 0/0/1: where a scene's normal map bends one of them",
+        ),
     ],
     positional: None,
     aliases: &[crate::Alias {
@@ -176,6 +182,9 @@ fn declares(spec: &ModelSpec) -> Declares {
     let factor = spec
         .rgb("anisotropy_direction")
         .map_or(1.0, |direction| direction[2]);
+    let bent = spec
+        .rgb("clearcoat_normal")
+        .is_some_and(|normal| normal[0] != 0.0 || normal[1] != 0.0);
     let relative_ior = if is_solid(spec) {
         dielectric::contrasted(number("ior"))
     } else {
@@ -183,7 +192,7 @@ fn declares(spec: &ModelSpec) -> Declares {
     };
     Declares {
         reciprocal: !coated,
-        isotropic: number("anisotropy") == 0.0 || factor <= 0.0,
+        isotropic: (number("anisotropy") == 0.0 || factor <= 0.0) && !(coated && bent),
         relative_ior: (transmission > 0.0).then_some([relative_ior; 3]),
         ..Declares::physical(if without_diffuse && !coated && !gaining {
             1.0

@@ -159,7 +159,8 @@ impl<R: Real, const N: usize> Gltf<R, N> {
             sheen = R::select(viewer.inside, zero, fibres);
         }
         if self.coat.on {
-            coat = R::select(viewer.inside, zero, self.coat.share(cos));
+            let share = self.coat.share(self.anisotropy.out_of_axes(viewer.o));
+            coat = R::select(viewer.inside, zero, share);
         }
         let uncoated = one - coat;
         let sheen = sheen * uncoated;
@@ -251,9 +252,13 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         }
         if self.coat.on {
             // What leaves a body passes the coat on the light's side.
-            let outer = R::select(viewer.inside, i.z, o.z);
+            let i = self.anisotropy.out_of_axes(i);
+            let o = self.anisotropy.out_of_axes(o);
+            let h = self.anisotropy.out_of_axes(half.h);
+            let outer = Vec3::select(viewer.inside, i, o);
             let within = viewer.inside & same;
             let share = R::select(within, zero, self.coat.share(outer));
+            let half = Half { h, cos: half.cos };
             let (coat, drawn) = self.coat.lobe(i, o, &half);
             let coat = R::select(on_layers, share * coat, zero);
             each_component!(N, k => { f[k] = f[k] * (one - share) + coat; });
@@ -298,7 +303,8 @@ impl<R: Real, const N: usize> Gltf<R, N> {
             drawn = Vec3::select(u[2].lt(parts.coat + parts.sheen), above(fibres), drawn);
         }
         if self.coat.on {
-            let coat = above(self.coat.draw(o, [u[0], u[1]]));
+            let coat = self.coat.draw(self.anisotropy.out_of_axes(o), [u[0], u[1]]);
+            let coat = above(self.anisotropy.into_axes(coat));
             drawn = Vec3::select(u[2].lt(parts.coat), coat, drawn);
         }
         self.anisotropy

@@ -2,9 +2,9 @@
 //! textures that drive them.
 
 use super::material::{Materials, Use, usage};
-use crate::SceneError;
 use crate::material::Channels;
 use crate::texture::Transfer;
+use crate::{Material, SceneError};
 use gltf::json;
 use gonio_brdf::{ModelSpec, Value};
 use serde_json::Map;
@@ -289,6 +289,41 @@ impl Materials<'_> {
             self.warn(format!(
                 "{place}: its emission isn't darkened by its clear coat"
             ));
+        }
+        Ok(())
+    }
+
+    /// The normal of a clear coat: bent by a map of its own, whatever bends the base's.
+    pub(super) fn coat_normal(
+        &mut self,
+        material: &mut Material,
+        source: &json::Material,
+        place: &str,
+    ) -> Result<(), SceneError> {
+        let Some(extensions) = source.extensions.as_ref() else {
+            return Ok(());
+        };
+        let coated = material.spec().values.contains_key("clearcoat");
+        let extension = self.extension(extensions, "KHR_materials_clearcoat", place)?;
+        let Some(extension) = extension.filter(|_| coated) else {
+            return Ok(());
+        };
+        let key = "clearcoatNormalTexture";
+        let map = match extension.values.get(key) {
+            None => None,
+            Some(value) => {
+                match json::deserialize::from_value::<json::material::NormalTexture>(value.clone())
+                {
+                    Ok(map) => self.normal_map(&map, place)?,
+                    Err(_) => {
+                        let expected = "a texture's index, texCoord and scale";
+                        return Err(self.wrong(&extension, key, value, expected));
+                    }
+                }
+            }
+        };
+        if map != material.normal_map {
+            material.bind_normal("clearcoat_normal", map)?;
         }
         Ok(())
     }

@@ -212,19 +212,10 @@ impl Materials<'_> {
             material.bind_vertex_colour("base_color")?;
         }
         if let Some(map) = &source.normal_texture {
-            let others = map.extensions.as_ref().map(|e| &e.others);
-            let used = Use {
-                texture: map.index.value(),
-                uv_set: map.tex_coord,
-                transform: None,
-            };
-            let used = self.transformed(used, others, place)?;
-            let texture = self.texture(Some(used), Transfer::Linear, place)?;
-            material.normal_map = texture.map(|texture| NormalMap {
-                texture,
-                scale: map.scale,
-            });
+            material.normal_map = self.normal_map(map, place)?;
         }
+        material.along_bitangent = spec.values.contains_key("anisotropy");
+        self.coat_normal(&mut material, source, place)?;
         let strength = extensions
             .and_then(|e| e.emissive_strength.as_ref())
             .map_or(1.0, |e| e.emissive_strength.0);
@@ -332,6 +323,25 @@ impl Materials<'_> {
         Ok(Some(texture))
     }
 
+    pub(super) fn normal_map(
+        &mut self,
+        map: &json::material::NormalTexture,
+        place: &str,
+    ) -> Result<Option<NormalMap>, SceneError> {
+        let others = map.extensions.as_ref().map(|e| &e.others);
+        let used = Use {
+            texture: map.index.value(),
+            uv_set: map.tex_coord,
+            transform: None,
+        };
+        let used = self.transformed(used, others, place)?;
+        let texture = self.texture(Some(used), Transfer::Linear, place)?;
+        Ok(texture.map(|texture| NormalMap {
+            texture,
+            scale: map.scale,
+        }))
+    }
+
     /// A use with KHR_texture_transform out of extensions that the parser left as they are.
     fn transformed(
         &self,
@@ -381,12 +391,4 @@ pub(super) fn usage(info: &json::texture::Info) -> Use {
 
 fn uv_transform(t: &json::extensions::texture::TextureTransform) -> UvTransform {
     UvTransform::new(t.offset.0, t.rotation.0, t.scale.0)
-}
-
-/// The set of texture coordinates that a material needs tangents for: that of its normal map, or the first if it is anisotropic.
-pub(super) fn tangents_uv_set(material: &Material) -> Option<u8> {
-    match &material.normal_map {
-        Some(map) => Some(map.texture.uv_set),
-        None => material.spec().values.get("anisotropy").map(|_| 0),
-    }
 }

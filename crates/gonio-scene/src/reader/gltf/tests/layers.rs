@@ -1,6 +1,7 @@
 //! Material extensions: what they set and what textures drive, and the errors.
 
 use super::*;
+use crate::SurfacePoint;
 use gonio_brdf::Model;
 use gonio_brdf::model::gltf::Gltf;
 
@@ -42,13 +43,18 @@ fn read(extensions: Value) -> (String, Gltf<f32, 3>) {
     for key in ["base_color", "metallic", "roughness"] {
         spec.values.remove(key);
     }
-    let direction = Vec3::new(0.0, 0.0, -1.0);
-    let ray = Ray::new(Vec3::new(0.25, 0.25, 1.0), direction);
-    let point = scene.intersect(&ray).unwrap();
-    let Model::Gltf(model) = scene.shade(&point, -direction).model.into_owned() else {
+    let (point, wo) = seen(&scene);
+    let Model::Gltf(model) = scene.shade(&point, wo).model.into_owned() else {
         panic!("{spec}");
     };
     (spec.to_string(), model)
+}
+
+/// A point of the triangle, and the direction to the viewer above it.
+fn seen(scene: &Scene) -> (SurfacePoint, Vec3<f32>) {
+    let wo = Vec3::new(0.0, 0.0, 1.0);
+    let ray = Ray::new(Vec3::new(0.25, 0.25, 1.0), -wo);
+    (scene.intersect(&ray).unwrap(), wo)
 }
 
 fn near(a: f32, b: f32) {
@@ -91,6 +97,36 @@ fn clearcoat_and_sheen() {
     near(g, 0.301_914);
     near(b, 0.25);
     near(model.sheen.fibres.alpha, 0.16);
+}
+
+/// A coat has the normal of the mesh, or its own map's, where a map bends the base's.
+#[test]
+fn a_coat_has_its_own_normal() {
+    let coat = |values: Value, base: Value| {
+        let extensions = json!({"KHR_materials_clearcoat": values});
+        let folder = Folder::new();
+        let scene = folder.load(&painted(extensions, base), &sound()).unwrap();
+        let (hit, wo) = seen(&scene);
+        let shading = scene.shade(&hit, wo);
+        let Model::Gltf(model) = &*shading.model else {
+            panic!("{:?}", shading.model);
+        };
+        (
+            model.coat.frame.map(|f| shading.frame.to_world(f.n)),
+            shading.frame.n,
+        )
+    };
+    let map = json!({"normalTexture": {"index": 0}});
+    let same = json!({"clearcoatFactor": 1, "clearcoatNormalTexture": {"index": 0}});
+    // The texel bends towards (−0.6, 0.6, 1) of the tangent frame, whose axes are those of the triangle.
+    let bent = Vec3::new(-0.6, 0.6, 1.0).normalize();
+    let (own, base) = coat(json!({"clearcoatFactor": 1}), map.clone());
+    assert!((base - bent).length() < 1e-2 && (own.unwrap().z - 1.0).abs() < 1e-5);
+    let (own, base) = coat(same.clone(), json!({}));
+    assert!((own.unwrap() - bent).length() < 1e-2 && base.z == 1.0);
+    // The same map for both, or none: one normal.
+    assert!(coat(same, map).0.is_none());
+    assert!(coat(json!({"clearcoatFactor": 1}), json!({})).0.is_none());
 }
 
 #[test]
@@ -213,6 +249,10 @@ fn values_of_the_wrong_kind_are_refused_by_place() {
         (
             "iridescenceTexture {\"index\":\"a\"}",
             json!({"KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceTexture": {"index": "a"}}}),
+        ),
+        (
+            "clearcoatNormalTexture 5",
+            json!({"KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatNormalTexture": 5}}),
         ),
         (
             "texture 4",
