@@ -15,6 +15,7 @@ pub fn showcase() -> Vec<ModelSpec> {
                 "sum(lambertian:reflectance=0.4, mirror:reflectance=0.2, ggx:f0=0.1,roughness=0.6)"
             }
             "mix" => "mix(0.3, lambertian:reflectance=0.4, ggx:metal=gold,roughness=0.4)",
+            "coat" => "coat(roughness=0.2, color=0.9/0.6/0.3, lambertian:reflectance=0.6)",
             "scaled" => "scaled(0.5, ggx:metal=copper,roughness=0.4)",
             name => name,
         };

@@ -36,10 +36,11 @@ impl ModelSpec {
         Ok(spec)
     }
 
-    /// Reads `name`, `name:key=value,key=value`, `sum(spec, spec)`, `scaled(factor, spec)` or `mix(weight, spec, spec)`.
+    /// Reads `name`, `name:key=value,key=value`, `sum(spec, spec)`, `scaled(factor, spec)`, `mix(weight, spec, spec)` or
+    /// `coat(key=value, spec)`.
     ///
-    /// `name` may be followed by `@preset`. A colour is `r/g/b` (linear), `#rrggbb` (sRGB-encoded) or one number for all components. In `sum(…)` and `mix(…)` a piece that
-    /// is only `key=value` belongs to the model before it.
+    /// `name` may be followed by `@preset`. A colour is `r/g/b` (linear), `#rrggbb` (sRGB-encoded) or one number for all components. In parentheses a piece that is only
+    /// `key=value` belongs to the model before it, before the first model to the composite.
     ///
     /// # Errors
     /// What is wrong and where, with the nearest valid name.
@@ -208,12 +209,26 @@ impl ModelSpec {
                 ),
             });
         };
+        // `key=value` before the first model belongs to the composite itself.
         let mut rest = inner;
-        if let Some(positional) = info.positional {
-            let first = split_top(inner).first().copied().unwrap_or_default();
+        for piece in split_top(inner) {
+            let Some((name, value)) = split_pair(piece).filter(|(name, _)| !name.contains(':'))
+            else {
+                break;
+            };
+            self.set_text(name, value)?;
+            let end = piece.as_ptr() as usize - inner.as_ptr() as usize + piece.len();
+            rest = inner[end..]
+                .trim_start()
+                .trim_start_matches(',')
+                .trim_start();
+        }
+        let positional = info.positional.filter(|p| !self.values.contains_key(*p));
+        if let Some(positional) = positional {
+            let first = split_top(rest).first().copied().unwrap_or_default();
             self.set_text(positional, first)?;
-            let offset = first.as_ptr() as usize - inner.as_ptr() as usize + first.len();
-            rest = inner[offset..].trim_start().trim_start_matches(',');
+            let end = first.as_ptr() as usize - rest.as_ptr() as usize + first.len();
+            rest = rest[end..].trim_start().trim_start_matches(',');
         }
         self.set_text(key.name, rest)
     }
@@ -360,8 +375,14 @@ impl fmt::Display for ModelSpec {
         if self.values.values().any(|v| matches!(v, Value::Models(_))) {
             let positional = registry::find(&self.name).ok().and_then(|i| i.positional);
             let mut open = "(";
+            for (key, value) in &self.values {
+                if positional != Some(key) && !matches!(value, Value::Models(_)) {
+                    write!(f, "{open}{key}={value}")?;
+                    open = ", ";
+                }
+            }
             if let Some(value) = positional.and_then(|p| self.value(p)) {
-                write!(f, "({value}")?;
+                write!(f, "{open}{value}")?;
                 open = ", ";
             }
             for value in self.values.values() {

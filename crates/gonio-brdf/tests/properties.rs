@@ -375,7 +375,12 @@ fn setting_a_parameter_is_building_with_it() {
                     before.set_text("alpha_x", "0.5").unwrap();
                     before.set_text("alpha_y", "0.25").unwrap();
                 }
-                "rotation_deg" => before.set_text("anisotropy", "0.5").unwrap(),
+                "rotation_deg" => {
+                    let has = |name| info.parameters.iter().any(|p| p.name == name);
+                    let key = ["anisotropy", "anisotropic"].into_iter().find(|k| has(*k));
+                    before.set_text(key.unwrap(), "0.5").unwrap();
+                }
+                "subsurface" => before.set_text("version", "2012").unwrap(),
                 _ => {}
             }
             let mut after = before.clone();

@@ -7,6 +7,8 @@ pub mod ashikhmin_premoze;
 pub mod ashikhmin_shirley;
 pub mod blinn_phong;
 pub mod burley;
+pub mod coat;
+pub mod disney;
 pub mod eon;
 pub mod gltf;
 pub mod gooch;
@@ -204,6 +206,8 @@ models! {
     RoughDielectric: rough_dielectric,
     /// A thin pane of glass.
     ThinDielectric: thin_dielectric,
+    /// Burley 2012 and 2015: Disney's principled models.
+    Disney: disney,
     /// The metallic-roughness material of glTF 2.0.
     Gltf: gltf,
     /// Estevez & Kulla 2017: sheen by microfacets.
@@ -227,6 +231,8 @@ models! {
     Mix: mix,
     /// A model times a colour.
     Scaled: scaled,
+    /// A coat of varnish over a model (T9b).
+    Coat: coat,
 }
 
 impl<R: Number, const N: usize> Model<R, N> {
@@ -245,7 +251,9 @@ impl<R: Number, const N: usize> Model<R, N> {
     pub fn warnings(&self) -> Vec<String> {
         match self {
             Self::Sum(sum) => sum.parts.iter().flat_map(Model::warnings).collect(),
+            Self::Mix(mix) => mix.parts.iter().flat_map(Model::warnings).collect(),
             Self::Scaled(scaled) => scaled.of.warnings(),
+            Self::Coat(coat) => coat.base().warnings(),
             Self::Table(table) => table.warnings(),
             _ => Vec::new(),
         }
@@ -257,6 +265,7 @@ impl<R: Number, const N: usize> Model<R, N> {
             Self::Sum(sum) => sum.parts.iter().all(Model::is_recordable),
             Self::Mix(mix) => mix.parts.iter().all(Model::is_recordable),
             Self::Scaled(scaled) => scaled.of.is_recordable(),
+            Self::Coat(coat) => coat.base().is_recordable(),
             Self::TorranceSparrow(facets) => facets.is_recordable(),
             Self::RetroReflective(turned) => turned.lobe.is_recordable(),
             other => other.info().recordable,
@@ -302,7 +311,7 @@ impl ParameterSlot {
 
 impl<const N: usize> Model<f32, N> {
     /// Sets a parameter to `value`, of which a number takes the first component; it is limited to the declared range, NaN
-    /// to the low end. `Sum`, `Mix` and `Scaled` pass it on to their parts of that model.
+    /// to the low end. `Sum`, `Mix`, `Scaled` and `Coat` pass it on to their parts of that model.
     pub fn set_parameter(&mut self, slot: ParameterSlot, value: [f32; 3]) {
         match self {
             Self::Sum(sum) if slot.model != sum::INFO.name => {
@@ -317,6 +326,10 @@ impl<const N: usize> Model<f32, N> {
             }
             Self::Scaled(scaled) if slot.model != scaled::INFO.name => {
                 scaled.of.set_parameter(slot, value);
+            }
+            Self::Coat(coat) if slot.model != coat::INFO.name => {
+                coat.base_mut().set_parameter(slot, value);
+                coat.update();
             }
             _ if self.info().name == slot.model => {
                 let (low, high) = match self.info().parameters[slot.index].kind {

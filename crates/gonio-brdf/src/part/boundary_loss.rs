@@ -21,7 +21,7 @@ pub const HEIGHT: usize = 14;
 pub const DEPTH: usize = 8;
 const SIDES: [usize; 3] = [WIDTH, HEIGHT, DEPTH];
 /// (m − 1)/(m + 1) of the largest index m.
-const MOST_CONTRAST: f64 = 0.6;
+pub(super) const MOST_CONTRAST: f64 = 0.6;
 
 /// A surface as seen from the rarer or from the denser of its two media.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,10 +54,16 @@ pub fn surfaces() -> [Seen; COUNT] {
 ///
 /// Quadrature in the random numbers of an importance sampler, accurate to about 1e-4.
 pub fn directional_albedo(d: &Distribution<f64>, masking: Masking, eta: f64, mu: f64) -> f64 {
+    let [reflected, refracted] = directional_shares(d, masking, eta, mu);
+    reflected + refracted
+}
+
+/// The two parts of [`directional_albedo`]: reflected and refracted.
+pub fn directional_shares(d: &Distribution<f64>, masking: Masking, eta: f64, mu: f64) -> [f64; 2] {
     let mu = mu.clamp(1e-6, 1.0);
     let wo = Vec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu);
     let (panels, turns) = (6, 32);
-    let mut sum = 0.0;
+    let mut sum = [0.0; 2];
     for panel in 0..panels {
         for (node, weight) in GAUSS_LEGENDRE_16 {
             for side in [-1.0, 1.0] {
@@ -67,7 +73,10 @@ pub fn directional_albedo(d: &Distribution<f64>, masking: Masking, eta: f64, mu:
                 let du = 6.0 * t * (1.0 - t) * weight / f64::from(panels);
                 for k in 0..turns {
                     let u0 = (f64::from(k) + 0.5) / f64::from(2 * turns);
-                    sum += du / f64::from(turns) * leaving(d, masking, eta, wo, [u0, u1]);
+                    let share = leaving(d, masking, eta, wo, [u0, u1]);
+                    for (sum, share) in sum.iter_mut().zip(share) {
+                        *sum += du / f64::from(turns) * share;
+                    }
                 }
             }
         }
@@ -75,8 +84,14 @@ pub fn directional_albedo(d: &Distribution<f64>, masking: Masking, eta: f64, mu:
     sum
 }
 
-/// The weight of the normal that u draws, reflected and refracted together.
-fn leaving(d: &Distribution<f64>, masking: Masking, eta: f64, wo: Vec3<f64>, u: [f64; 2]) -> f64 {
+/// The weights of the normal that u draws, reflected and refracted.
+fn leaving(
+    d: &Distribution<f64>,
+    masking: Masking,
+    eta: f64,
+    wo: Vec3<f64>,
+    u: [f64; 2],
+) -> [f64; 2] {
     let visible = d.shape() == Shape::Ggx;
     let h = if visible {
         d.sample_visible_ggx(wo, u[0], u[1])
@@ -85,7 +100,7 @@ fn leaving(d: &Distribution<f64>, masking: Masking, eta: f64, wo: Vec3<f64>, u: 
     };
     let cos = wo.dot(h);
     if cos <= 0.0 {
-        return 0.0;
+        return [0.0; 2];
     }
     // D(h) cosθ′/p(h), of which both weights are multiples.
     let base = if visible {
@@ -95,18 +110,18 @@ fn leaving(d: &Distribution<f64>, masking: Masking, eta: f64, wo: Vec3<f64>, u: 
     };
     let f = dielectric(cos.min(1.0), eta);
     let up = wo.reflect(h);
-    let mut sum = 0.0;
+    let mut shares = [0.0; 2];
     if up.z > 0.0 {
-        sum += f * 4.0 * visibility_from_areas(masking, d, up, wo) * up.z;
+        shares[0] = base * f * 4.0 * visibility_from_areas(masking, d, up, wo) * up.z;
     }
     if f < 1.0 {
         let down = refracted_about(wo, h, cos, 1.0 / eta);
         if down.z < 0.0 {
             let wi = Vec3::new(down.x, down.y, -down.z);
-            sum += (1.0 - f) * 4.0 * visibility_across(masking, d, wi, wo) * wi.z;
+            shares[1] = base * (1.0 - f) * 4.0 * visibility_across(masking, d, wi, wo) * wi.z;
         }
     }
-    sum * base
+    shares
 }
 
 /// The loss at the place (√μ, √α, contrast) of a table.

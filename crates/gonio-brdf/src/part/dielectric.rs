@@ -50,8 +50,8 @@ pub(crate) const ABSORPTION: ParameterInfo = ParameterInfo::colour(
 );
 
 /// A rough boundary's index of refraction may not be nearer to 1 than this: there the refracted lobe of the smoothest surface is narrower
-/// than single precision resolves directions.
-pub const LEAST_CONTRAST: f64 = 1e-3;
+/// than single precision resolves directions. A power of 2: 1 ± this has no rounding.
+pub const LEAST_CONTRAST: f64 = 1.0 / 1024.0;
 
 /// An index of refraction that isn't nearer to 1 than [`LEAST_CONTRAST`].
 pub(crate) fn contrasted<R: Real>(ior: R) -> R {

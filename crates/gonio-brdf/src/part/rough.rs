@@ -102,6 +102,18 @@ impl<R: Real> RoughSurface<R> {
         })
     }
 
+    /// GGX of a perceptual roughness, an anisotropy and a rotation in degrees as in the parameters
+    /// of these names.
+    pub(crate) fn ggx(masking: Masking, roughness: R, anisotropy: R, rotation_deg: R) -> Self {
+        let slopes = Slopes::new(roughness, anisotropy, rotation_deg);
+        let (x, y) = (slopes.alpha_x, slopes.alpha_y);
+        Self {
+            distribution: Distribution::new(Shape::Ggx, x, y, R::zero()),
+            masking,
+            slopes,
+        }
+    }
+
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> RoughSurface<S> {
         RoughSurface {
             distribution: self.distribution.cast(f),

@@ -122,6 +122,20 @@ impl<R: Real> Slopes<R> {
         })
     }
 
+    /// Of a perceptual roughness, an anisotropy and a rotation in degrees.
+    pub(crate) fn new(roughness: R, anisotropy: R, rotation_deg: R) -> Self {
+        let turn = rotation_deg * R::lit(PI / 180.0);
+        let mut slopes = Self {
+            alpha_x: R::one(),
+            alpha_y: R::one(),
+            rotation: Some([turn.cos(), turn.sin()]),
+            alpha: roughness * roughness,
+            aspect: R::one(),
+        };
+        slopes.set("anisotropy", anisotropy);
+        slopes
+    }
+
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> Slopes<S> {
         Slopes {
             alpha_x: f(self.alpha_x),

@@ -10,6 +10,9 @@ pub fn base(info: &ModelInfo) -> Option<ModelSpec> {
     let text = match info.name {
         "sum" => "sum(lambertian:reflectance=0.4, mirror:0.2, ggx:f0=0.1,roughness=0.6)".to_owned(),
         "mix" => "mix(0.3/0.5/0.8, mirror:0.2, ggx:f0=0.3,roughness=0.6)".to_owned(),
+        "coat" => {
+            "coat(roughness=0.4, ior=1.6, color=0.9/0.6/0.3, lambertian:0.3/0.6/0.8)".to_owned()
+        }
         "scaled" => "scaled(0.2/0.5/0.8, phong:exponent=12)".to_owned(),
         // A table comes from a file: it has tests of its own.
         "table" => return None,

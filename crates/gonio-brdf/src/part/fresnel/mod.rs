@@ -30,11 +30,13 @@ pub fn schlick<R: Real>(cos: R, f0: R, f90: R) -> R {
 #[inline(always)]
 pub fn dielectric<R: Real>(cos: R, ior: R) -> R {
     let tiny = R::lit(1e-20);
-    let sin2_t = (R::one() - cos * cos).max(R::zero()) / (ior * ior);
-    let total = sin2_t.ge(R::one());
-    let cos_t = (R::one() - sin2_t).max(tiny).sqrt();
-    let s = (cos - ior * cos_t) / (cos + ior * cos_t).max(tiny);
-    let p = (ior * cos - cos_t) / (ior * cos + cos_t).max(tiny);
+    // η cosθt from η² − 1, which keeps its digits at grazing angles, where 1 − sin²θ/η² loses them.
+    let n2 = ior * ior;
+    let g2 = (ior - R::one()) * (ior + R::one()) + cos * cos;
+    let total = g2.le(R::zero());
+    let g = g2.max(tiny).sqrt();
+    let s = (cos - g) / (cos + g).max(tiny);
+    let p = (n2 * cos - g) / (n2 * cos + g).max(tiny);
     R::select(total, R::one(), (s * s + p * p) * R::lit(0.5))
 }
 
