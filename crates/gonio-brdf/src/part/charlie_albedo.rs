@@ -95,7 +95,7 @@ mod tests {
             (0.01, 0.1),
         ] {
             let found: f64 = share_below(mu, roughness * roughness);
-            let short = 1.0 - directional_albedo(roughness * roughness, mu) - found;
+            let short = rest(f64::sqrt(mu), roughness) - found;
             assert!(
                 short > -1e-4 && short < 2e-2,
                 "{mu} {roughness}: {short} of {found}"

@@ -397,15 +397,18 @@ impl<R: Real> Coat<R> {
         (f, density)
     }
 
-    /// A direction mirrored by one of the facets that the viewer sees.
+    /// A direction mirrored by one of the facets that the viewer sees; −z, which is no direction to the light, where it or the viewer is
+    /// behind the coat's normal.
     #[inline(always)]
     pub(super) fn draw(&self, wo: Vec3<R>, u: [R; 2]) -> Vec3<R> {
         let o = self.local(wo);
-        // From behind the coat's normal nothing is drawn: the density is 0.
         let front = Vec3::new(o.x, o.y, o.z.abs());
         let wi = o.reflect(self.distribution.sample_visible_ggx(front, u[0], u[1]));
         match &self.frame {
-            Some(frame) => frame.to_world(wi),
+            Some(frame) => {
+                let down = Vec3::new(R::zero(), R::zero(), -R::one());
+                Vec3::select(above(wi, o), frame.to_world(wi), down)
+            }
             None => wi,
         }
     }
