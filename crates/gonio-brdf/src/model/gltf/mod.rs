@@ -33,8 +33,8 @@ use whole::EvalWhole;
 /// - transmission t: mix(c/π, c T, t) in place of c/π. For a thin wall T is S of the mirror image of ωi. For a solid body it is
 ///   Walter's refraction, f = |ωi·h| |ωr·h| n_r² G D/(|cosθi cosθr| (n_i ωi·h + n_r ωr·h)²), with F by the angle outside, and 1 beyond the
 ///   critical angle; the body absorbs σ = −ln(attenuation_color)/attenuation_distance
-/// - sheen: f = sheen + f min(1 − max(s) E(ωi), 1 − max(s) E(ωr)), with the fibres of [`SheenCharlie`](super::sheen_charlie::SheenCharlie), s their colour and E
-///   their albedo
+/// - sheen: f = sheen + f min(1 − max(s) E(ωi), 1 − max(s) E(ωr)), with the fibres of `sheen-charlie` of alpha = sheen_roughness², s their
+///   colour and E the albedo of white ones; below sheen_roughness 0.3 they return more than they get at grazing angles
 /// - clearcoat: f = mix(f, S, k), k = clearcoat · (0.04 + 0.96 (1 − cosθr)⁵), S with the coat's roughness; by the viewer's angle alone, so it isn't reciprocal.
 ///   A coat with a normal N of its own has cosθr = |N·ωr| and S |N·ωi|/cosθi
 ///

@@ -81,6 +81,17 @@ fn above<R: Real>(w: Vec3<R>) -> Vec3<R> {
     Vec3::select(w.z.gt(R::zero()), w, none)
 }
 
+/// The probabilities for a viewer.
+struct PartsOf<'a, R: Real, const N: usize>(&'a Gltf<R, N>, &'a Viewer<R>);
+
+impl<R: Real, const N: usize> Work for PartsOf<'_, R, N> {
+    type Output = Parts<R>;
+    #[inline(always)]
+    fn run(self) -> Parts<R> {
+        self.0.parts_of(self.1)
+    }
+}
+
 impl<R: Real, const N: usize> Gltf<R, N> {
     /// On which side a direction lies; only what transmits has two.
     #[inline(always)]
@@ -145,9 +156,15 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         mirrored / (mirrored + facet.passing * mean(self.base_color))
     }
 
-    /// Each part's share of the albedo, estimated with the facet that lies flat. They steer efficiency only, so the film is left out.
+    /// [`Gltf::parts_of`], once for all kernels.
     #[inline(always)]
     fn parts(&self, viewer: &Viewer<R>) -> Parts<R> {
+        R::out_of_line(PartsOf(self, viewer))
+    }
+
+    /// Each part's share of the albedo, estimated with the facet that lies flat. They steer efficiency only, so the film is left out.
+    #[inline(always)]
+    fn parts_of(&self, viewer: &Viewer<R>) -> Parts<R> {
         let (zero, one) = (R::zero(), R::one());
         let cos = viewer.o.z.saturate();
         let facet = self.facet(cos, viewer.inside, false);
