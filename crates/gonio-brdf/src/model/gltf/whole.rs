@@ -81,16 +81,24 @@ fn above<R: Real>(w: Vec3<R>) -> Vec3<R> {
     Vec3::select(w.z.gt(R::zero()), w, none)
 }
 
-/// The probabilities for a viewer.
-struct PartsOf<'a, R: Real, const N: usize>(&'a Gltf<R, N>, &'a Viewer<R>);
+/// Declares a piece of the formula as a function of its own: a compiler's time grows faster than the length of a function.
+macro_rules! piece {
+    ($name:ident($($argument:ty),*) -> $output:ty: $method:ident($($index:tt),*)) => {
+        struct $name<'a, R: Real, const N: usize>(&'a Gltf<R, N>, $($argument),*);
 
-impl<R: Real, const N: usize> Work for PartsOf<'_, R, N> {
-    type Output = Parts<R>;
-    #[inline(always)]
-    fn run(self) -> Parts<R> {
-        self.0.parts_of(self.1)
-    }
+        impl<R: Real, const N: usize> Work for $name<'_, R, N> {
+            type Output = $output;
+            #[inline(always)]
+            fn run(self) -> $output {
+                self.0.$method($(self.$index),*)
+            }
+        }
+    };
 }
+piece!(PartsOf(&'a Viewer<R>) -> Parts<R>: parts_of(1));
+piece!(FacetOf(R, R::Mask, bool) -> Facet<R, N>: facet_of(1, 2, 3));
+piece!(FibresOf(Vec3<R>, Vec3<R>) -> ([R; N], R): fibres_of(1, 2));
+piece!(CoatOf(Vec3<R>, Vec3<R>, Half<R>) -> (R, R): coat_of(1, 2, 3));
 
 impl<R: Real, const N: usize> Gltf<R, N> {
     /// On which side a direction lies; only what transmits has two.
@@ -116,7 +124,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
     /// How a facet shares out light at `cos` to its normal. In a body it is the angle outside that counts; beyond the critical angle
     /// all is reflected.
     #[inline(always)]
-    fn facet(&self, cos: R, inside: R::Mask, film: bool) -> Facet<R, N> {
+    fn facet_of(&self, cos: R, inside: R::Mask, film: bool) -> Facet<R, N> {
         let one = R::one();
         let mut cos = cos;
         let mut total = R::Mask::splat(false);
@@ -149,6 +157,23 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         }
     }
 
+    /// The light that the fibres of the sheen reflect, and the density of drawing it from them.
+    #[inline(always)]
+    fn fibres_of(&self, i: Vec3<R>, o: Vec3<R>) -> ([R; N], R) {
+        self.sheen.fibres.eval_and_pdf(i, o)
+    }
+
+    /// The coat's lobe and the density of drawing it, in the frame of the anisotropy.
+    #[inline(always)]
+    fn coat_of(&self, i: Vec3<R>, o: Vec3<R>, half: Half<R>) -> (R, R) {
+        let half = Half {
+            h: self.anisotropy.out_of_axes(half.h),
+            cos: half.cos,
+        };
+        let i = self.anisotropy.out_of_axes(i);
+        self.coat.lobe(i, self.anisotropy.out_of_axes(o), &half)
+    }
+
     /// Probability that a facet which was drawn reflects: its share of what leaves.
     #[inline(always)]
     fn mirror_probability(&self, facet: &Facet<R, N>) -> R {
@@ -156,18 +181,12 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         mirrored / (mirrored + facet.passing * mean(self.base_color))
     }
 
-    /// [`Gltf::parts_of`], once for all kernels.
-    #[inline(always)]
-    fn parts(&self, viewer: &Viewer<R>) -> Parts<R> {
-        R::out_of_line(PartsOf(self, viewer))
-    }
-
     /// Each part's share of the albedo, estimated with the facet that lies flat. They steer efficiency only, so the film is left out.
     #[inline(always)]
     fn parts_of(&self, viewer: &Viewer<R>) -> Parts<R> {
         let (zero, one) = (R::zero(), R::one());
         let cos = viewer.o.z.saturate();
-        let facet = self.facet(cos, viewer.inside, false);
+        let facet = R::out_of_line(FacetOf(self, cos, viewer.inside, false));
         let albedo = mean(self.base_color);
         let (mut coat, mut sheen, mut below) = (zero, zero, one);
         if self.sheen.on {
@@ -197,7 +216,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
 
     #[inline(always)]
     pub(super) fn whole_albedo(&self, wo: Vec3<R>) -> R {
-        self.parts(&self.viewer(wo)).sum
+        R::out_of_line(PartsOf(self, &self.viewer(wo))).sum
     }
 
     #[inline(always)]
@@ -238,7 +257,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         let d = self.distribution.density(h);
         let lobe = d * visibility_from_areas(Masking::Smith, &self.distribution, i, o);
         let facet_density = R::lit(0.25) * d * smith_g1_over_cos(&self.distribution, o);
-        let facet = self.facet(cos, inside, true);
+        let facet = R::out_of_line(FacetOf(self, cos, inside, true));
         let mirror = self.mirror_probability(&facet);
 
         let diffuse = scale(self.base_color, facet.diffuse * R::lit(FRAC_1_PI));
@@ -251,7 +270,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
             let density = facet_density * passing_factors[1] * (one - mirror);
             through = R::select(same, through, R::select(faces, density, zero));
         }
-        let parts = self.parts(&viewer);
+        let parts = R::out_of_line(PartsOf(self, &viewer));
         let cosine = R::select(same, cosine_hemisphere_density(i), zero);
         let mut density = parts.facets * through + parts.diffuse * cosine;
 
@@ -262,21 +281,16 @@ impl<R: Real, const N: usize> Gltf<R, N> {
             let share_i = R::select(bare_i, one, self.sheen.split(i.z).0);
             let share_o = R::select(viewer.inside, one, self.sheen.split(o.z).0);
             f = scale(f, share_i.min(share_o));
-            let fibres = &self.sheen.fibres;
-            f = add(f, only_where(on_layers, fibres.eval(i, o)));
-            let drawn = R::select(on_layers, fibres.pdf(i, o), zero);
-            density = density + parts.sheen * drawn;
+            let (fibres, drawn) = R::out_of_line(FibresOf(self, i, o));
+            f = add(f, only_where(on_layers, fibres));
+            density = density + parts.sheen * R::select(on_layers, drawn, zero);
         }
         if self.coat.on {
             // What leaves a body passes the coat on the light's side.
-            let i = self.anisotropy.out_of_axes(i);
-            let o = self.anisotropy.out_of_axes(o);
-            let h = self.anisotropy.out_of_axes(half.h);
             let outer = Vec3::select(viewer.inside, i, o);
-            let within = viewer.inside & same;
-            let share = R::select(within, zero, self.coat.share(outer));
-            let half = Half { h, cos: half.cos };
-            let (coat, drawn) = self.coat.lobe(i, o, &half);
+            let share = self.coat.share(self.anisotropy.out_of_axes(outer));
+            let share = R::select(viewer.inside & same, zero, share);
+            let (coat, drawn) = R::out_of_line(CoatOf(self, i, o, half));
             let coat = R::select(on_layers, share * coat, zero);
             each_component!(N, k => { f[k] = f[k] * (one - share) + coat; });
             density = density + parts.coat * R::select(on_layers, drawn, zero);
@@ -289,7 +303,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         let (zero, one) = (R::zero(), R::one());
         let viewer = self.viewer(self.anisotropy.into_axes(wo));
         let o = viewer.o;
-        let parts = self.parts(&viewer);
+        let parts = R::out_of_line(PartsOf(self, &viewer));
         let tiny = R::lit(1e-20);
         let none = Vec3::new(one, zero, zero);
 
@@ -301,7 +315,8 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         let cos = cos.clamp(zero, one);
         let mut drawn = above(o.reflect(h));
         if self.passage.on {
-            let mirror = self.mirror_probability(&self.facet(cos, viewer.inside, true));
+            let facet = R::out_of_line(FacetOf(self, cos, viewer.inside, true));
+            let mirror = self.mirror_probability(&facet);
             let through = if self.passage.solid {
                 let ior = self.passage.relative_ior(self.ior);
                 let ratio = R::select(viewer.inside, ior, ior.recip());
