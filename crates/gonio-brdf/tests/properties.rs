@@ -337,6 +337,7 @@ fn setting_a_parameter_is_building_with_it() {
         let Some(base) = common::base(info) else {
             continue;
         };
+        let has = |name: &str| info.parameters.iter().any(|p| p.name == name);
         for p in info.parameters {
             let (value, given) = match p.kind {
                 Kind::Number { low, high, .. } => {
@@ -347,7 +348,10 @@ fn setting_a_parameter_is_building_with_it() {
                     };
                     (Value::Number(x), [x as f32; 3])
                 }
-                Kind::Colour { .. } => (Value::Colour([0.25, 0.5, 0.75]), [0.25, 0.5, 0.75]),
+                Kind::Colour { low, high, .. } => {
+                    let c = [0.25, 0.5, 0.75].map(|x: f64| x.clamp(low, high));
+                    (Value::Colour(c), c.map(|x| x as f32))
+                }
                 _ => {
                     assert!(ParameterSlot::find(info.name, p.name).is_err());
                     continue;
@@ -356,17 +360,15 @@ fn setting_a_parameter_is_building_with_it() {
             // Values that only another choice uses, or that come in pairs.
             let mut before = base.clone();
             match p.name {
-                "ior" if info.parameters.iter().any(|p| p.name == "fresnel") => {
-                    before.set_text("fresnel", "dielectric").unwrap();
-                }
-                "f0" => before.set_text("fresnel", "schlick").unwrap(),
+                "ior" if has("fresnel") => before.set_text("fresnel", "dielectric").unwrap(),
+                "f0" if has("fresnel") => before.set_text("fresnel", "schlick").unwrap(),
                 "f82" => before.set_text("fresnel", "f82-tint").unwrap(),
                 "film_thickness_nm" | "film_ior" => {
                     before.set_text("fresnel", "thin-film").unwrap();
                 }
                 "gamma" => before.set_text("distribution", "student-t").unwrap(),
-                "p" => before.set_text("distribution", "sgd").unwrap(),
-                "c" => before.set_text("distribution", "abc").unwrap(),
+                "p" if has("distribution") => before.set_text("distribution", "sgd").unwrap(),
+                "c" if has("distribution") => before.set_text("distribution", "abc").unwrap(),
                 "eta" | "k" => {
                     before.set_text("eta", "2").unwrap();
                     before.set_text("k", "3").unwrap();

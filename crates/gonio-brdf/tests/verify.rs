@@ -55,6 +55,9 @@ fn the_catalogue_away_from_its_defaults() {
         "ashikhmin-shirley:diffuse=1,specular=0.1/0.5/0.9,nu=20,nv=400",
         "ashikhmin-shirley:ior=1.5,scale=0.5,diffuse_term=lambertian",
         "ashikhmin-premoze:diffuse=0.5,specular=0.2,nu=3,nv=30",
+        "bagher:diffuse=0.1,alpha_squared=0.001/0.04/0.5,p=0.2/1/1.9,f0=0.5,f1=0.1/0.3/-0.2",
+        "low-microfacet:diffuse=0,specular=0.5,b=20,c=0.3,ior=3",
+        "low-smooth:diffuse=0.2,specular=2/1/0.1,b=9,c=0.05",
         "sheen-charlie:alpha=0.05,visibility=neubelt",
         "sheen-ltc:roughness=0.1",
         "retro-reflective:metal=silver,alpha_x=0.15,alpha_y=0.4,rotation_deg=30",
@@ -73,8 +76,54 @@ fn the_catalogue_away_from_its_defaults() {
         "blinn-phong@pearl-paint",
         "ward@ngan/black-oxidized-steel",
         "cook-torrance@low-e2/green-fabric",
+        "bagher@alum-bronze",
+        "low-microfacet@nickel",
+        "low-smooth@yellow-plastic",
     ] {
         passes(text);
+    }
+}
+
+/// Production models, lobe by lobe and all at once.
+#[test]
+fn layers_and_production_models() {
+    for text in [
+        "coat(roughness=0, lambertian:1)",
+        "coat(roughness=0.5, anisotropy=0.8, ior=2, color=0.9/0.5/0.1, weight=0.7, darkening=0.5, ggx:metal=gold,roughness=0.3)",
+        "coat(layering=albedo-scaling, ior=1.8, eon:1)",
+        "coat(roughness=0.3, mirror:1)",
+        "coat(color=0.5/0.7/0.9, rough-dielectric:roughness=0.4,ior=1.33)",
+        "coat(weight=0.5, mix(0.5, lambertian:0.2, coat(roughness=0.8, lambertian:1)))",
+        "disney-2012:0.8/0.3/0.1,roughness=0.5,subsurface=0.5,sheen=1,clearcoat=1,clearcoat_gloss=0,specular_tint=1",
+        "disney:0.8/0.3/0.1,metallic=1,roughness=0.4,anisotropic=0.9,rotation_deg=20",
+        "disney:0.9/0.5/0.2,spec_trans=0.7,roughness=0.4,metallic=0.2,clearcoat=1,clearcoat_gloss=0.5,sheen=0.5",
+        "disney:1,spec_trans=1,roughness=0.2,ior=1.33",
+        "openpbr:base_metalness=1,specular_color=0.6,specular_roughness=0.6,specular_roughness_anisotropy=0.7",
+        "openpbr:base_color=1,base_diffuse_roughness=1,coat_weight=1,coat_roughness=0.4,coat_color=0.9/0.6/0.2,fuzz_weight=0.5,fuzz_roughness=0.2",
+        "openpbr:transmission_weight=1,specular_roughness=0.4,transmission_color=0.9/0.5/0.2,coat_weight=0.5,fuzz_weight=1",
+        "openpbr:transmission_weight=0.5,transmission_depth=2,transmission_color=0.1/0.5/0.9,thin_film_weight=1,specular_roughness=0.5",
+        "openpbr:thin_film_weight=0.7,thin_film_thickness=0.4,base_metalness=0.5,subsurface_weight=0.5,specular_weight=2",
+        "openpbr:geometry_thin_walled=on,transmission_weight=0.5,transmission_color=0.8/0.4/0.9,subsurface_weight=0.6,\
+         subsurface_scatter_anisotropy=0.4,specular_roughness=0.5,fuzz_weight=0.3,coat_weight=0.3,coat_roughness=0.5",
+    ] {
+        passes(text);
+    }
+}
+
+/// White under layers that only reflect stays white, but for what their tables stand above the truth, and never gets brighter.
+#[test]
+fn white_furnace_of_layers() {
+    for text in [
+        "coat(layering=albedo-scaling, roughness=0.3, lambertian:1)",
+        "coat(layering=albedo-scaling, roughness=0.8, ior=2, lambertian:1)",
+        "openpbr:base_color=1,specular_roughness=0.5",
+        "openpbr:base_color=1,specular_ior=2,specular_roughness=1,coat_weight=1,coat_roughness=0.6,fuzz_weight=1",
+        "openpbr:base_color=1,base_metalness=1,specular_roughness=0.7",
+    ] {
+        let report = check(&ModelSpec::parse(text).unwrap(), Effort::Quick).unwrap();
+        assert!(report.passed(), "{report}");
+        let verdict = report.verdict(Property::EnergyConservation).unwrap();
+        assert!(verdict.figure > 0.99, "{report}");
     }
 }
 
@@ -125,6 +174,24 @@ fn what_is_declared_costs_and_is_seen() {
             Property::Reciprocity,
         ),
         ("gooch", Property::Reciprocity),
+        (
+            "disney:1,roughness=0.1,sheen=1",
+            Property::EnergyConservation,
+        ),
+        ("openpbr", Property::Reciprocity),
+        (
+            "coat(layering=albedo-scaling, lambertian:0.5)",
+            Property::Reciprocity,
+        ),
+        ("bagher@white-paint", Property::EnergyConservation),
+        (
+            "low-microfacet:specular=300,diffuse=0",
+            Property::EnergyConservation,
+        ),
+        (
+            "low-smooth:specular=3000,diffuse=0",
+            Property::EnergyConservation,
+        ),
     ] {
         let report = check(&ModelSpec::parse(text).unwrap(), Effort::Quick).unwrap();
         assert!(report.passed(), "{report}");
@@ -174,4 +241,11 @@ fn declarations_follow_the_parameters() {
     assert!(declares("ashikhmin-shirley:diffuse=1,specular=1").energy_conserving);
     assert!(!declares("sheen-ltc").reciprocal && declares("sheen-charlie").reciprocal);
     assert!(declares("retro-reflective:metal=gold").energy_conserving);
+    assert!(!declares("bagher").energy_conserving && declares("bagher").reciprocal);
+    // C = 2: the lobe's bound is A π/(1 + B).
+    assert!(declares("low-smooth:diffuse=0.5,specular=1.7,b=10,c=2").energy_conserving);
+    assert!(!declares("low-smooth:diffuse=0.5,specular=1.8,b=10,c=2").energy_conserving);
+    // C = 2, B = 1: 4/π 2π (2 (1 − 1/2) − ln 2) A = 2.455 A.
+    assert!(declares("low-microfacet:diffuse=0.5,specular=0.203,b=1,c=2").energy_conserving);
+    assert!(!declares("low-microfacet:diffuse=0.5,specular=0.204,b=1,c=2").energy_conserving);
 }

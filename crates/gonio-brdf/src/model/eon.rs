@@ -165,6 +165,15 @@ impl<R: Real> Lobe<R> {
 }
 
 impl<R: Real, const N: usize> Eon<R, N> {
+    /// Of a reflectance and a roughness, with the exact albedo.
+    pub(crate) fn new(reflectance: [R; N], roughness: R) -> Self {
+        Self {
+            reflectance,
+            roughness,
+            exact: true,
+        }
+    }
+
     pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
         Ok(Self {
             reflectance: spec.colour("reflectance")?,

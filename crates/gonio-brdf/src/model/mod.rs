@@ -5,6 +5,7 @@
 
 pub mod ashikhmin_premoze;
 pub mod ashikhmin_shirley;
+pub mod bagher;
 pub mod blinn_phong;
 pub mod burley;
 pub mod coat;
@@ -14,8 +15,11 @@ pub mod gltf;
 pub mod gooch;
 pub mod lafortune;
 pub mod lambertian;
+pub mod low_microfacet;
+pub mod low_smooth;
 pub mod mirror;
 pub mod mix;
+pub mod openpbr;
 pub mod oren_nayar;
 pub mod phong;
 pub mod retro_reflective;
@@ -200,6 +204,12 @@ models! {
     Burley: burley,
     /// Torrance & Sparrow 1967: microfacets (T18).
     TorranceSparrow: torrance_sparrow,
+    /// Bagher et al. 2012: microfacets with numbers of their own for each colour.
+    Bagher: bagher,
+    /// Löw et al. 2012: microfacets with a free scale.
+    LowMicrofacet: low_microfacet,
+    /// Löw et al. 2012: scattering of smooth surfaces.
+    LowSmooth: low_smooth,
     /// A smooth boundary into a clear body.
     SmoothDielectric: smooth_dielectric,
     /// Walter et al. 2007: a rough boundary into a clear body.
@@ -233,6 +243,8 @@ models! {
     Scaled: scaled,
     /// A coat of varnish over a model (T9b).
     Coat: coat,
+    /// OpenPBR Surface 1.1.
+    OpenPbr: openpbr,
 }
 
 impl<R: Number, const N: usize> Model<R, N> {

@@ -94,6 +94,15 @@ pub struct RoughDielectric<R: Real, const N: usize> {
 }
 
 impl<R: Real, const N: usize> RoughDielectric<R, N> {
+    /// Of a GGX or Beckmann surface, with the lobe of several facets.
+    pub(crate) fn with_interreflection(surface: RoughSurface<R>, boundary: Boundary<R, N>) -> Self {
+        Self {
+            surface,
+            boundary,
+            interreflection: Some(BoundaryLoss::new(&surface, boundary.ior)),
+        }
+    }
+
     pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
         let masking = Masking::from_name(&spec.word("masking"));
         let surface = RoughSurface::from_spec(spec, masking.unwrap_or(Masking::SmithCorrelated))?;

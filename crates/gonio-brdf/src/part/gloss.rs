@@ -9,7 +9,7 @@ use gonio_num::{Real, Table3, Work};
 /// Samples along √μ.
 pub const WIDTH: usize = 32;
 /// Samples along √α.
-pub const HEIGHT: usize = 14;
+pub const HEIGHT: usize = 24;
 /// Samples along the contrast of the indices.
 pub const DEPTH: usize = 16;
 const SIDES: [usize; 3] = [WIDTH, HEIGHT, DEPTH];

@@ -84,7 +84,7 @@ const TINY: f64 = 1e-23;
 
 /// G(ωi, ωr)/(4 cosθi cosθr), for directions above the horizon. Symmetric to the last bit.
 ///
-/// V-cavities: G = min(1, 2 h.z ωr.z/cosθ′, 2 h.z ωi.z/cosθ′).
+/// V-cavities: [`v_cavity`].
 #[inline(always)]
 pub fn visibility<R: Real>(
     masking: Masking,
@@ -93,16 +93,18 @@ pub fn visibility<R: Real>(
     wo: Vec3<R>,
     half: &Half<R>,
 ) -> R {
-    let tiny = R::lit(TINY);
-    let quarter = R::lit(0.25);
     match masking {
-        Masking::VCavity => {
-            let groove = R::lit(2.0) * half.h.z * wi.z.min(wo.z);
-            let g = R::one().min(groove / half.cos.max(R::lit(1e-15)));
-            quarter * g / (wi.z * wo.z).max(tiny)
-        }
+        Masking::VCavity => v_cavity(wi, wo, half),
         Masking::Smith | Masking::SmithCorrelated => visibility_from_areas(masking, d, wi, wo),
     }
+}
+
+/// [`visibility`] of V-cavities: G = min(1, 2 h.z ωr.z/cosθ′, 2 h.z ωi.z/cosθ′).
+#[inline(always)]
+pub fn v_cavity<R: Real>(wi: Vec3<R>, wo: Vec3<R>, half: &Half<R>) -> R {
+    let groove = R::lit(2.0) * half.h.z * wi.z.min(wo.z);
+    let g = R::one().min(groove / half.cos.max(R::lit(1e-15)));
+    R::lit(0.25) * g / (wi.z * wo.z).max(R::lit(TINY))
 }
 
 /// [`visibility`] of Smith's maskings, which doesn't need the half vector.

@@ -15,6 +15,8 @@ pub mod fresnel;
 pub mod geometry;
 pub mod gloss;
 pub mod interreflection;
+pub mod inverse_power;
+pub mod low_lobe;
 pub mod masking;
 pub mod masking_table;
 pub mod metal;

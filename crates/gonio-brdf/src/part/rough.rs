@@ -105,7 +105,15 @@ impl<R: Real> RoughSurface<R> {
     /// GGX of a perceptual roughness, an anisotropy and a rotation in degrees as in the parameters
     /// of these names.
     pub(crate) fn ggx(masking: Masking, roughness: R, anisotropy: R, rotation_deg: R) -> Self {
-        let slopes = Slopes::new(roughness, anisotropy, rotation_deg);
+        Self::ggx_of(masking, Slopes::new(roughness, anisotropy, rotation_deg))
+    }
+
+    /// GGX of slope scales along x and y.
+    pub(crate) fn ggx_of_slopes(masking: Masking, alpha_x: R, alpha_y: R) -> Self {
+        Self::ggx_of(masking, Slopes::of_scales(alpha_x, alpha_y))
+    }
+
+    fn ggx_of(masking: Masking, slopes: Slopes<R>) -> Self {
         let (x, y) = (slopes.alpha_x, slopes.alpha_y);
         Self {
             distribution: Distribution::new(Shape::Ggx, x, y, R::zero()),

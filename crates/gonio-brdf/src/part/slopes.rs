@@ -122,6 +122,19 @@ impl<R: Real> Slopes<R> {
         })
     }
 
+    /// Of slope scales along x and y, limited to their range.
+    pub(crate) fn of_scales(alpha_x: R, alpha_y: R) -> Self {
+        let floor = |a: R| a.clamp(R::lit(ALPHA_MIN), R::one());
+        let (alpha_x, alpha_y) = (floor(alpha_x), floor(alpha_y));
+        Self {
+            alpha_x,
+            alpha_y,
+            rotation: None,
+            alpha: (alpha_x * alpha_y).sqrt(),
+            aspect: (alpha_y / alpha_x).sqrt(),
+        }
+    }
+
     /// Of a perceptual roughness, an anisotropy and a rotation in degrees.
     pub(crate) fn new(roughness: R, anisotropy: R, rotation_deg: R) -> Self {
         let turn = rotation_deg * R::lit(PI / 180.0);

@@ -58,6 +58,12 @@ tables! {
         "MERL materials, fitted by Löw et al. 2012 (their error E2)";
     "cook-torrance", "low-e1", "cook_torrance_low_e1.txt",
         "MERL materials, fitted by Löw et al. 2012 (their error E1)";
+    "bagher", "bagher", "bagher_bagher.txt",
+        "MERL materials, fitted by Bagher et al. 2012, each colour by itself";
+    "low-microfacet", "low-e2", "low_microfacet_low_e2.txt",
+        "MERL materials, fitted by Löw et al. 2012 (their error E2)";
+    "low-smooth", "low-e2", "low_smooth_low_e2.txt",
+        "MERL materials, fitted by Löw et al. 2012 (their error E2)";
 }
 
 /// The name of the set of metals.

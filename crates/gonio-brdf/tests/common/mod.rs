@@ -25,11 +25,13 @@ pub fn base(info: &ModelInfo) -> Option<ModelSpec> {
 fn values(kind: &Kind) -> Vec<Value> {
     let between = |low: f64, high: f64, t: f64| {
         // Wide ranges are walked by factors.
-        if high > 50.0 * low.max(1.0) {
+        let x = if high > 50.0 * low.max(1.0) {
             low + (1.0 + high - low).powf(t) - 1.0
         } else {
             low + (high - low) * t
-        }
+        };
+        // Rounding may put an end outside.
+        x.clamp(low, high)
     };
     match *kind {
         Kind::Number { low, high, .. } => [0.0, 0.15, 0.5, 0.8, 1.0]
