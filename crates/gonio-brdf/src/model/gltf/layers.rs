@@ -83,7 +83,7 @@ impl<R: Real> Anisotropy<R> {
 
     /// A direction in the frame of the two slope scales.
     #[inline(always)]
-    pub(super) fn into_axes(&self, w: Vec3<R>) -> Vec3<R> {
+    pub(super) fn in_axes(&self, w: Vec3<R>) -> Vec3<R> {
         if self.on {
             turned(w, self.axis[0], -self.axis[1])
         } else {

@@ -222,7 +222,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
     #[inline(always)]
     fn eval_whole(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
         let (zero, one) = (R::zero(), R::one());
-        let (wi, wo) = (self.anisotropy.into_axes(wi), self.anisotropy.into_axes(wo));
+        let (wi, wo) = (self.anisotropy.in_axes(wi), self.anisotropy.in_axes(wo));
         let viewer = self.viewer(wo);
         let (o, below) = (viewer.o, viewer.below);
         let below_i = self.is_below(wi);
@@ -301,7 +301,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
     #[inline(always)]
     fn draw_whole(&self, wo: Vec3<R>, u: [R; 3]) -> Vec3<R> {
         let (zero, one) = (R::zero(), R::one());
-        let viewer = self.viewer(self.anisotropy.into_axes(wo));
+        let viewer = self.viewer(self.anisotropy.in_axes(wo));
         let o = viewer.o;
         let parts = R::out_of_line(PartsOf(self, &viewer));
         let tiny = R::lit(1e-20);
@@ -336,7 +336,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
         }
         if self.coat.on {
             let coat = self.coat.draw(self.anisotropy.out_of_axes(o), [u[0], u[1]]);
-            let coat = above(self.anisotropy.into_axes(coat));
+            let coat = above(self.anisotropy.in_axes(coat));
             drawn = Vec3::select(u[2].lt(parts.coat), coat, drawn);
         }
         self.anisotropy

@@ -109,7 +109,7 @@ impl Materials<'_> {
             return Ok(());
         };
         let thickness = volume.thickness_factor.0;
-        if !(thickness >= 0.0) {
+        if thickness < 0.0 {
             let found = format!("thicknessFactor {thickness}");
             return Err(SceneError::format(
                 self.arrays.path,
@@ -124,7 +124,7 @@ impl Materials<'_> {
             let colour = volume.attenuation_color.0;
             self.set(spec, place, "attenuation_color", colour, (0.0, 1.0))?;
             let distance = volume.attenuation_distance.0;
-            if !(distance > 0.0) {
+            if distance <= 0.0 {
                 let found = format!("attenuationDistance {distance}");
                 return Err(SceneError::format(
                     self.arrays.path,
