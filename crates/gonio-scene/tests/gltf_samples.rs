@@ -24,7 +24,7 @@ const MODELS: [(&str, &str); 28] = [
     ("NegativeScaleTest", ""),
     ("NormalTangentTest", ""),
     ("OrientationTest", ""),
-    ("SheenChair", ""),
+    ("SheenChair", "KHR_materials_variants"),
     ("SimpleInstancing", ""),
     ("SpecularTest", ""),
     ("TextureCoordinateTest", ""),
