@@ -2,15 +2,15 @@
 //! interreflection and layers.
 //!
 //! `cargo run --release -p gonio-brdf --example tabulate -- masking crates/gonio-brdf/src/part/masking.bin`, then the same
-//! with `albedo`, `boundary` and `gloss`, which are computed from the first.
+//! with `albedo`, `boundary` and `gloss`, which are computed from the first, and with `charlie_albedo`.
 
-use gonio_brdf::part::{albedo, boundary_loss, gloss, masking_table};
+use gonio_brdf::part::{albedo, boundary_loss, charlie_albedo, gloss, masking_table};
 use std::io::Write as _;
 
 fn main() -> std::io::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let (Some(what), Some(path)) = (arguments.next(), arguments.next()) else {
-        eprintln!("usage: tabulate masking|albedo|boundary|gloss FILE");
+        eprintln!("usage: tabulate masking|albedo|boundary|gloss|charlie_albedo FILE");
         std::process::exit(2);
     };
     let numbers: Vec<f32> = match what.as_str() {
@@ -26,8 +26,11 @@ fn main() -> std::io::Result<()> {
             .flat_map(boundary_loss::tabulate)
             .collect(),
         "gloss" => gloss::tabulate(),
+        "charlie_albedo" => charlie_albedo::tabulate(),
         other => {
-            eprintln!("unknown table `{other}`: masking, albedo, boundary or gloss");
+            eprintln!(
+                "unknown table `{other}`: masking, albedo, boundary, gloss or charlie_albedo"
+            );
             std::process::exit(2);
         }
     };

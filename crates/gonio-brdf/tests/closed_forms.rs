@@ -124,6 +124,78 @@ fn gltf_ends_are_its_metal_and_its_dielectric() {
     assert!(near(f, 0.96 * 0.5 * FRAC_1_PI + 0.04 / (4.0 * PI / 16.0)));
 }
 
+/// The layers of glTF over a black base without specular reflection, and the shares that they leave it.
+#[test]
+fn gltf_layers_by_hand() {
+    let (wi, wo) = (tilted(30.0, 20.0), tilted(40.0, 190.0));
+    // The coat is a white mirror of facets, in the share 0.04 + 0.96 (1 − cosθr)⁵.
+    let coat = model("gltf:base_color=0,specular=0,clearcoat=0.5,clearcoat_roughness=0.4");
+    let facets = model("ggx:fresnel=none,roughness=0.4,masking=smith,interreflection=none");
+    let k = 0.5 * (0.04 + 0.96 * (1.0 - wo.z).powi(5));
+    assert!(near(coat.eval(wi, wo)[0], k * facets.eval(wi, wo)[0]));
+    let plain = model("gltf:roughness=0.7");
+    let coated = model("gltf:roughness=0.7,clearcoat=0.5,clearcoat_roughness=0.4");
+    let mixed = (1.0 - k) * plain.eval(wi, wo)[0] + k * facets.eval(wi, wo)[0];
+    assert!(near(coated.eval(wi, wo)[0], mixed));
+    // Sheen alone is that of `sheen-charlie`.
+    let sheen = model("gltf:base_color=0,specular=0,sheen_color=0.2/0.5/0.9,sheen_roughness=0.6");
+    let fibres = model("sheen-charlie:0.2/0.5/0.9,roughness=0.6");
+    for (f, g) in sheen.eval(wi, wo).into_iter().zip(fibres.eval(wi, wo)) {
+        assert!(near(f, g));
+    }
+    // A film of the index of air leaves the metal's reflectance F0 at normal incidence.
+    let film = model("gltf:metallic=1,base_color=0.5,iridescence=1,iridescence_ior=1");
+    let bare = model("gltf:metallic=1,base_color=0.5");
+    assert!(near(film.eval(UP, UP)[0], bare.eval(UP, UP)[0]));
+    // Anisotropic at normal incidence: F0/(4π αx αy), αx = α + (1 − α) s² = 0.16 + 0.84 · 0.25, αy = 0.16.
+    let brushed = model("gltf:metallic=1,base_color=1,roughness=0.4,anisotropy=0.5");
+    assert!(near(
+        brushed.eval(UP, UP)[0],
+        1.0 / (4.0 * PI * 0.37 * 0.16)
+    ));
+    // It is rougher along x: light and viewer far apart in that azimuth still see a highlight.
+    let apart = |azimuth: f64| brushed.eval(tilted(50.0, azimuth), UP)[0];
+    assert!(apart(0.0) > 2.0 * apart(90.0));
+    let turned = model("gltf:metallic=1,base_color=1,roughness=0.4,anisotropy=0.5,rotation_deg=90");
+    assert!(near(turned.eval(tilted(50.0, 90.0), UP)[0], apart(0.0)));
+    let directed = model(
+        "gltf:metallic=1,base_color=1,roughness=0.4,anisotropy=1,anisotropy_direction=0/0.3/0.5",
+    );
+    assert!(near(directed.eval(tilted(50.0, 90.0), UP)[0], apart(0.0)));
+}
+
+/// Light through glTF's walls and bodies.
+#[test]
+fn gltf_transmits_by_hand() {
+    // A thin wall passes straight on what a mirror of the same facets would reflect: (1 − 0.04) c D V, D V = 1/(4π α²).
+    let wall = model("gltf:transmission=0.5,base_color=0.6,roughness=0.5");
+    let straight = wall.eval(Vec3::new(0.0, 0.0, -1.0), UP)[0];
+    assert!(near(straight, 0.5 * 0.96 * 0.6 / (4.0 * PI / 16.0)));
+    let diffuse = model("gltf:base_color=0.6,roughness=0.5");
+    let reflected = 0.5 * 0.96 * 0.6 * FRAC_1_PI;
+    let lost = diffuse.eval(UP, UP)[0] - wall.eval(UP, UP)[0];
+    assert!(near(lost, reflected));
+    // A body is Walter's boundary but for its Fresnel reflectance: at normal incidence both have 0.04.
+    let body = model("gltf:transmission=1,body=solid,base_color=1,roughness=0.5");
+    let glass = model("rough-dielectric:ior=1.5,roughness=0.5,masking=smith,interreflection=none");
+    let down = Vec3::new(0.0, 0.0, -1.0);
+    for (wi, wo) in [(UP, UP), (down, UP), (UP, down), (down, down)] {
+        assert!(near(body.eval(wi, wo)[0], glass.eval(wi, wo)[0]));
+    }
+    // Beyond the critical angle of 41.8° the inner side reflects all, whatever its specular strength: 50° in the mirror direction.
+    let dull = model("gltf:transmission=1,body=solid,base_color=1,roughness=0.5,specular=0");
+    let mirror = model("ggx:fresnel=none,roughness=0.5,masking=smith,interreflection=none");
+    let (i, o) = (tilted(50.0, 0.0), tilted(50.0, 180.0));
+    let flip = |w: Vec3<f64>| Vec3::new(w.x, w.y, -w.z);
+    assert!(near(dull.eval(flip(i), flip(o))[0], mirror.eval(i, o)[0]));
+    // σ = −ln(c)/d.
+    let tinted =
+        model("gltf:transmission=1,body=solid,attenuation_color=0.5,attenuation_distance=2");
+    assert!(near(tinted.absorption()[1], 2.0f64.ln() / 2.0));
+    let thin = model("gltf:transmission=1,attenuation_color=0.5,attenuation_distance=2");
+    assert_eq!(thin.absorption(), [0.0; 3]);
+}
+
 #[test]
 fn toon_is_flat_within_a_band() {
     let m = model("toon:reflectance=0.6,bands=3,specular=0");

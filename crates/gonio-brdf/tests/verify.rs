@@ -63,6 +63,16 @@ fn the_catalogue_away_from_its_defaults() {
         "retro-reflective:metal=silver,alpha_x=0.15,alpha_y=0.4,rotation_deg=30",
         "toon:rim=0.5,rim_deg=40,bands=4",
         "mix(0.2/0.5/0.9, mirror:0.9, sum(eon:0.3, ward:diffuse=0,specular=0.2))",
+        "gltf:metallic=0.4,anisotropy=0.8,rotation_deg=30,roughness=0.4",
+        "gltf:metallic=1,base_color=0.9/0.6/0.3,iridescence=1,iridescence_thickness_nm=550,roughness=0.3",
+        "gltf:transmission=0.7,roughness=0.3,base_color=0.9/0.5/0.2",
+        "gltf:transmission=1,body=solid,roughness=0.4,ior=1.5,base_color=1",
+        "gltf:transmission=0.6,body=solid,roughness=0.6,ior=1.8,metallic=0.2,specular=0.5,anisotropy=0.7",
+        "gltf:sheen_color=0.9/0.5/0.2,sheen_roughness=0.5,base_color=0,roughness=0.7",
+        "gltf:clearcoat=1,clearcoat_roughness=0.2,base_color=0.5/0.1/0.1,roughness=0.6",
+        "gltf:clearcoat=0.8,clearcoat_roughness=0.3,sheen_color=0.5,sheen_roughness=0.4,transmission=0.5,body=solid,iridescence=0.5",
+        "gltf:clearcoat=0.8,clearcoat_roughness=0.3,sheen_color=0.5,sheen_roughness=0.4,transmission=0.5,roughness=0.2",
+        "gltf:clearcoat=1,clearcoat_roughness=0.4,clearcoat_normal=0.3/-0.2/0.9,anisotropy=0.6,rotation_deg=40",
         "blinn-phong@pearl-paint",
         "ward@ngan/black-oxidized-steel",
         "cook-torrance@low-e2/green-fabric",
@@ -144,6 +154,15 @@ fn what_is_declared_costs_and_is_seen() {
         ("toon", Property::Reciprocity),
         ("ggx:anisotropy=0.8", Property::Isotropy),
         ("gltf:roughness=0", Property::EnergyConservation),
+        (
+            "gltf:sheen_color=1,sheen_roughness=0",
+            Property::EnergyConservation,
+        ),
+        ("gltf:clearcoat=1,base_color=0", Property::Reciprocity),
+        (
+            "gltf:metallic=1,anisotropy=0.7,roughness=0.3",
+            Property::Isotropy,
+        ),
         ("burley:1,roughness=1", Property::EnergyConservation),
         (
             "ward-duer:alpha=0.3,specular=1,diffuse=0",
@@ -198,6 +217,20 @@ fn declarations_follow_the_parameters() {
     assert!(!declares("ggx:alpha_x=0.1,alpha_y=0.2").isotropic);
     assert!(!declares("torrance-sparrow:distribution=blinn-phong").energy_conserving);
     assert!(declares("gltf:metallic=1").energy_conserving);
+    assert!(declares("gltf:transmission=1,body=solid").energy_conserving);
+    assert!(!declares("gltf:transmission=0.9").energy_conserving);
+    assert!(!declares("gltf:metallic=1,clearcoat=0.1").reciprocal);
+    assert!(declares("gltf:metallic=1,sheen_color=1,sheen_roughness=0.3").energy_conserving);
+    assert!(!declares("gltf:metallic=1,sheen_color=1").energy_conserving);
+    assert_eq!(
+        declares("gltf:transmission=1,ior=1.3").relative_ior,
+        Some([1.0; 3])
+    );
+    assert_eq!(
+        declares("gltf:transmission=1,ior=1.3,body=solid").relative_ior,
+        Some([1.3; 3])
+    );
+    assert_eq!(declares("gltf:body=solid").relative_ior, None);
     assert_eq!(declares("eon:0.7"), Declares::physical(0.7));
     assert!(declares("burley:1,roughness=0.39").energy_conserving);
     assert!(!declares("burley:1,roughness=0.41").energy_conserving);

@@ -86,7 +86,7 @@ pub struct SheenCharlie<R: Real, const N: usize> {
 }
 
 /// The smallest α: smaller ones are taken for this one. Below it no light comes back but at grazing angles.
-const ALPHA_MIN: f64 = 1e-3;
+pub(crate) const ALPHA_MIN: f64 = 1e-3;
 
 /// L(x) for α.
 #[inline(always)]
@@ -187,6 +187,14 @@ impl<R: Real, const N: usize> SheenCharlie<R, N> {
     fn lobe_probability(wo: Vec3<R>) -> R {
         R::lit(0.2) + R::lit(0.7) * wo.z.saturate()
     }
+
+    /// A direction with the density `pdf`.
+    #[inline(always)]
+    pub(crate) fn draw(&self, wo: Vec3<R>, u: [R; 3]) -> Vec3<R> {
+        let lobe = SheenLobe::new(wo, self.alpha.sqrt()).sample([u[0], u[1]]);
+        let uniform = uniform_hemisphere([u[0], u[1]]);
+        Vec3::select(u[2].lt(Self::lobe_probability(wo)), lobe, uniform)
+    }
 }
 
 impl<R: Real, const N: usize> Brdf<R, N> for SheenCharlie<R, N> {
@@ -206,10 +214,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for SheenCharlie<R, N> {
 
     #[inline(always)]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
-        let lobe = SheenLobe::new(wo, self.alpha.sqrt()).sample([u[0], u[1]]);
-        let uniform = uniform_hemisphere([u[0], u[1]]);
-        let wi = Vec3::select(u[2].lt(Self::lobe_probability(wo)), lobe, uniform);
-        self.sample_of(wi, wo)
+        self.sample_of(self.draw(wo, u), wo)
     }
 
     #[inline(always)]

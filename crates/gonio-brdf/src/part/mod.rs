@@ -4,6 +4,7 @@
 pub mod albedo;
 pub mod ashikhmin_lobe;
 pub mod boundary_loss;
+pub mod charlie_albedo;
 pub(crate) mod clearcoat;
 pub(crate) mod colour;
 pub mod dielectric;

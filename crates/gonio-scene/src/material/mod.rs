@@ -31,11 +31,14 @@ pub struct Material {
     pub opacity: Opacity,
     /// Whether the back shines as the front does.
     pub double_sided: bool,
+    /// Whether +y of the local frame is along the bitangent of the mesh, mirrored or not. Otherwise the local frame is right-handed.
+    pub along_bitangent: bool,
     spec: ModelSpec,
     model: Model<f32, 3>,
     /// Whether `model` transmits, textures left out.
     model_transmits: bool,
     bindings: Vec<Binding>,
+    second_normal: Option<SecondNormal>,
     albedo: [f32; 3],
     /// The binding whose value is the albedo, if one drives the model's colour.
     albedo_binding: Option<usize>,
@@ -86,6 +89,13 @@ pub enum AlphaMode {
     Blend,
 }
 
+/// A direction among the model's parameters, which is the normal of the mesh, bent by a map of its own or by none.
+#[derive(Debug, Clone)]
+struct SecondNormal {
+    slot: ParameterSlot,
+    map: Option<NormalMap>,
+}
+
 /// What drives one parameter of the model: `base` × texture × vertex colour.
 #[derive(Debug, Clone)]
 struct Binding {
@@ -110,6 +120,8 @@ impl Material {
             emission: Emission::default(),
             opacity: Opacity::default(),
             double_sided: false,
+            along_bitangent: false,
+            second_normal: None,
             spec: spec.clone(),
             model_transmits: model.transmits(),
             model,
@@ -139,6 +151,7 @@ impl Material {
         self.model_transmits = self.model.transmits();
         self.spec = spec.clone();
         self.bindings.clear();
+        self.second_normal = None;
         self.albedo = normal_albedo(&self.model);
         self.albedo_binding = None;
         Ok(())
@@ -163,6 +176,30 @@ impl Material {
         let binding = self.binding(parameter)?;
         binding.vertex_colour = true;
         Ok(())
+    }
+
+    /// Lets the normal of the mesh drive a parameter that is a direction in the local frame, such as the normal of a coat: bent by
+    /// `map`, not by [`Material::normal_map`].
+    ///
+    /// # Errors
+    /// As [`Material::bind_texture`].
+    pub fn bind_normal(
+        &mut self,
+        parameter: &str,
+        map: Option<NormalMap>,
+    ) -> Result<(), SceneError> {
+        let slot = ParameterSlot::find(self.spec.info()?.name, parameter)?;
+        self.second_normal = Some(SecondNormal { slot, map });
+        Ok(())
+    }
+
+    /// The set of texture coordinates that the mesh's tangents must follow: that of the first normal map, or the first one where
+    /// +y of the local frame is along the bitangent.
+    pub(crate) fn tangents_uv_set(&self) -> Option<u8> {
+        let second = self.second_normal.as_ref().and_then(|n| n.map.as_ref());
+        let map = self.normal_map.as_ref().or(second);
+        map.map(|map| map.texture.uv_set)
+            .or(self.along_bitangent.then_some(0))
     }
 
     /// The model with the textures all white: what is driven has its largest value.
@@ -217,9 +254,12 @@ impl Material {
             Some(Value::Colour(c)) => c.map(|x| x as f32),
             _ => [1.0; 3],
         };
-        // A colour that may exceed 1, such as an absorption coefficient, is no share of light.
-        let is_share = matches!(declared.kind, Kind::Colour { high, .. } if high <= 1.0);
-        if is_share && self.albedo_binding.is_none() {
+        // A direction is no share of light, nor is a colour that may exceed 1, such as an absorption coefficient; one that is black
+        // unless it is given is an addition to another.
+        let is_share =
+            matches!(declared.kind, Kind::Colour { low, high, .. } if low >= 0.0 && high <= 1.0);
+        let is_addition = declared.default_value() == Some(Value::Colour([0.0; 3]));
+        if is_share && !is_addition && self.albedo_binding.is_none() {
             self.albedo_binding = Some(self.bindings.len());
         }
         self.bindings.push(Binding {

@@ -1,6 +1,6 @@
 //! [`Shading`]: a material at a point of a surface, ready to reflect.
 
-use super::{Binding, Material};
+use super::{Binding, Material, NormalMap};
 use crate::SurfacePoint;
 use gonio_brdf::{Brdf, Model};
 use gonio_num::{Frame, Vec3};
@@ -43,7 +43,7 @@ impl Material {
         let alpha = self.opacity.at(point);
         let mut albedo = self.albedo;
         let mut transmits = self.model_transmits;
-        let model = if self.bindings.is_empty() {
+        let mut model = if self.bindings.is_empty() {
             Cow::Borrowed(&self.model)
         } else {
             let mut model = self.model.clone();
@@ -57,11 +57,21 @@ impl Material {
             transmits = model.transmits();
             Cow::Owned(model)
         };
-        let mut normal = facing(self.bent_normal(point), point.ng, wo);
-        if transmits && point.ng.dot(wo) < 0.0 {
+        let behind = point.ng.dot(wo) < 0.0;
+        let mut normal = facing(bent_normal(point, self.normal_map.as_ref()), point.ng, wo);
+        if transmits && behind {
             normal = -normal;
         }
-        let frame = Frame::from_normal_tangent(normal, point.tangent);
+        let mut frame = Frame::from_normal_tangent(normal, point.tangent);
+        if self.along_bitangent && frame.t.dot(point.bitangent()) < 0.0 {
+            frame.t = -frame.t;
+        }
+        if let Some(second) = &self.second_normal {
+            let bent = bent_normal(point, second.map.as_ref());
+            let bent = if behind && !transmits { -bent } else { bent };
+            let local = frame.to_local(bent).to_array();
+            model.to_mut().set_parameter(second.slot, local);
+        }
         Shading {
             frame,
             model,
@@ -70,26 +80,26 @@ impl Material {
             albedo,
         }
     }
+}
 
-    /// The shading normal with the normal map applied, on the front side.
-    fn bent_normal(&self, point: &SurfacePoint) -> Vec3<f32> {
-        let Some(map) = &self.normal_map else {
-            return point.ns;
-        };
-        let [r, g, b, _] = map.texture.lookup(point.uv, point.uv1);
-        let (x, y, z) = (
-            (2.0 * r - 1.0) * map.scale,
-            (2.0 * g - 1.0) * map.scale,
-            2.0 * b - 1.0,
-        );
-        let frame = Frame::from_normal_tangent(point.ns, point.tangent);
-        let bent = frame.s * x + frame.t * (y * point.bitangent_sign) + frame.n * z;
-        let length = bent.length();
-        if length > 1e-6 && length.is_finite() {
-            bent / length
-        } else {
-            point.ns
-        }
+/// The shading normal with a normal map applied, if there is one, on the front side.
+fn bent_normal(point: &SurfacePoint, map: Option<&NormalMap>) -> Vec3<f32> {
+    let Some(map) = map else {
+        return point.ns;
+    };
+    let [r, g, b, _] = map.texture.lookup(point.uv, point.uv1);
+    let (x, y, z) = (
+        (2.0 * r - 1.0) * map.scale,
+        (2.0 * g - 1.0) * map.scale,
+        2.0 * b - 1.0,
+    );
+    let frame = Frame::from_normal_tangent(point.ns, point.tangent);
+    let bent = frame.s * x + frame.t * (y * point.bitangent_sign) + frame.n * z;
+    let length = bent.length();
+    if length > 1e-6 && length.is_finite() {
+        bent / length
+    } else {
+        point.ns
     }
 }
 

@@ -1,4 +1,4 @@
-//! Tangents for normal maps, derived from texture coordinates.
+//! Tangents for normal maps and anisotropy, derived from texture coordinates.
 //!
 //! A normal map stores normals in the frame (tangent, bitangent, normal) whose tangent points along growing u. A mesh
 //! without tangents gets them here, in the way of MikkTSpace (Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited"):

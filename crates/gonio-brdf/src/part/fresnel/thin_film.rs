@@ -121,9 +121,8 @@ impl<R: Real> Work for Reflectance<R> {
             k,
             cos,
         } = self;
-        let one = R::one();
-        let sin2 = (one - cos * cos).max(R::zero());
-        let cos_film = (one - sin2 / (n * n)).max(R::zero()).sqrt();
+        let cos2 = cos * cos;
+        let cos_film = cos_inside(n, cos2);
         let path_um = n * thickness_nm * cos_film * R::lit(2e-3);
         let waves = waves(path_um);
         // Amplitudes at the outer face, of s and of p.
@@ -134,7 +133,7 @@ impl<R: Real> Work for Reflectance<R> {
         ];
         let mut out = eta;
         for c in 0..3 {
-            let inner = inner(n, cos_film, sin2, eta[c], k[c]);
+            let inner = inner(n, cos_film, cos2, eta[c], k[c]);
             let mut sum = R::zero();
             for p in 0..2 {
                 sum = sum + airy(outer[p], inner[p], &waves[c]);
@@ -173,11 +172,17 @@ fn waves<R: Real>(path_um: R) -> [[[R; 2]; ORDERS]; 3] {
     out
 }
 
-/// The complex amplitudes (real, imaginary) of s and p reflected at the body, from a film of index `n` with the cosine `cos` in it.
+/// The cosine in a film of index `n`, for cos²θ in air: √(n² − sin²θ)/n, with all digits for n = 1 at grazing angles.
 #[inline(always)]
-fn inner<R: Real>(n: R, cos: R, sin2: R, eta: R, k: R) -> [[R; 2]; 2] {
+fn cos_inside<R: Real>(n: R, cos2: R) -> R {
+    ((n - R::one()) * (n + R::one()) + cos2).safe_sqrt() / n
+}
+
+/// The complex amplitudes (real, imaginary) of s and p reflected at the body, from a film of index `n` with the cosine `cos` in it, for cos²θ in air.
+#[inline(always)]
+fn inner<R: Real>(n: R, cos: R, cos2: R, eta: R, k: R) -> [[R; 2]; 2] {
     // a + ib = N₃ cosθ₃ = √(η² − k² − sin²θ + 2iηk), with sinθ that in air.
-    let t = eta * eta - k * k - sin2;
+    let t = (eta - R::one()) * (eta + R::one()) - k * k + cos2;
     let modulus = (t * t + (eta * k).sq() * R::lit(4.0))
         .max(R::lit(1e-20))
         .sqrt();
@@ -241,14 +246,14 @@ mod tests {
     /// |r|² of one wavelength by Airy's formula, s and p averaged.
     fn exact(film: &ThinFilm<f64, 3>, cos: f64, lambda_um: f64) -> f64 {
         let n = film.ior;
-        let sin2 = 1.0 - cos * cos;
-        let cos_film = (1.0 - sin2 / (n * n)).sqrt();
+        let cos2 = cos * cos;
+        let cos_film = cos_inside(n, cos2);
         let delta = TAU / lambda_um * 2e-3 * n * film.thickness_nm * cos_film;
         let outer = [
             (cos - n * cos_film) / (cos + n * cos_film),
             (n * cos - cos_film) / (n * cos + cos_film),
         ];
-        let inner = inner(n, cos_film, sin2, film.eta[0], film.k[0]);
+        let inner = inner(n, cos_film, cos2, film.eta[0], film.k[0]);
         let (sin_d, cos_d) = delta.sin_cos();
         (0..2)
             .map(|p| {
@@ -291,14 +296,14 @@ mod tests {
             let film = film(d, n, eta, k);
             for cos in [0.4, 0.8, 1.0] {
                 for lambda_um in [0.45, 0.6] {
-                    let sin2: f64 = 1.0 - cos * cos;
-                    let cos_film = (1.0 - sin2 / (n * n)).sqrt();
+                    let cos2: f64 = cos * cos;
+                    let cos_film = cos_inside(n, cos2);
                     let delta = TAU / lambda_um * 2e-3 * n * d * cos_film;
                     let waves: [[f64; 2]; ORDERS] = std::array::from_fn(|m| {
                         let (sin, cos) = ((m + 1) as f64 * delta).sin_cos();
                         [cos, sin]
                     });
-                    let inner = inner(n, cos_film, sin2, eta, k);
+                    let inner = inner(n, cos_film, cos2, eta, k);
                     let outer = [
                         (cos - n * cos_film) / (cos + n * cos_film),
                         (n * cos - cos_film) / (n * cos + cos_film),

@@ -5,13 +5,19 @@ use gltf::json;
 use std::path::Path;
 
 /// Extensions that are mapped.
-const MAPPED: [&str; 10] = [
+const MAPPED: [&str; 16] = [
     "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
     "KHR_materials_specular",
+    "KHR_materials_transmission",
     "KHR_materials_unlit",
+    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     // Descriptive only.
@@ -102,11 +108,8 @@ pub(super) fn warnings(root: &json::Root) -> Vec<String> {
     warnings
 }
 
-/// Whether a material has an extension.
+/// Whether a material has an extension that isn't mapped.
 fn uses(material: &json::Material, name: &str) -> bool {
-    material.extensions.as_ref().is_some_and(|e| match name {
-        "KHR_materials_transmission" => e.transmission.is_some(),
-        "KHR_materials_volume" => e.volume.is_some(),
-        _ => e.others.contains_key(name),
-    })
+    let extensions = material.extensions.as_ref();
+    extensions.is_some_and(|e| e.others.contains_key(name))
 }

@@ -17,7 +17,7 @@ pub(super) struct Materials<'a> {
 
 /// Where a texture is used: its index, its set of coordinates, and its transform.
 #[derive(Clone, Copy)]
-struct Use {
+pub(super) struct Use {
     texture: usize,
     uv_set: u32,
     transform: Option<UvTransform>,
@@ -149,6 +149,7 @@ impl Materials<'_> {
                 (0.0, 100.0),
             )?;
         }
+        let drives = self.layers(&mut spec, source, place)?;
         let mut material = Material::new(name, &spec)?;
         let base = pbr.base_color_texture.as_ref().map(usage);
         self.bind(
@@ -196,23 +197,25 @@ impl Materials<'_> {
                 place,
             )?;
         }
+        for drive in drives {
+            if let Some(texture) = self.texture(Some(drive.used), drive.transfer, place)? {
+                let input = TextureInput {
+                    texture,
+                    channels: drive.channels,
+                    scale: drive.scale,
+                    offset: drive.offset,
+                };
+                material.bind_texture(drive.parameter, input)?;
+            }
+        }
         if vertex_colours {
             material.bind_vertex_colour("base_color")?;
         }
         if let Some(map) = &source.normal_texture {
-            let others = map.extensions.as_ref().map(|e| &e.others);
-            let used = Use {
-                texture: map.index.value(),
-                uv_set: map.tex_coord,
-                transform: None,
-            };
-            let used = self.transformed(used, others, place)?;
-            let texture = self.texture(Some(used), Transfer::Linear, place)?;
-            material.normal_map = texture.map(|texture| NormalMap {
-                texture,
-                scale: map.scale,
-            });
+            material.normal_map = self.normal_map(map, place)?;
         }
+        material.along_bitangent = spec.values.contains_key("anisotropy");
+        self.coat_normal(&mut material, source, place)?;
         let strength = extensions
             .and_then(|e| e.emissive_strength.as_ref())
             .map_or(1.0, |e| e.emissive_strength.0);
@@ -235,7 +238,7 @@ impl Materials<'_> {
     }
 
     /// Sets a parameter of the model from one or three numbers, limited to its range with a warning.
-    fn set<const N: usize>(
+    pub(super) fn set<const N: usize>(
         &mut self,
         spec: &mut ModelSpec,
         place: &str,
@@ -320,6 +323,25 @@ impl Materials<'_> {
         Ok(Some(texture))
     }
 
+    pub(super) fn normal_map(
+        &mut self,
+        map: &json::material::NormalTexture,
+        place: &str,
+    ) -> Result<Option<NormalMap>, SceneError> {
+        let others = map.extensions.as_ref().map(|e| &e.others);
+        let used = Use {
+            texture: map.index.value(),
+            uv_set: map.tex_coord,
+            transform: None,
+        };
+        let used = self.transformed(used, others, place)?;
+        let texture = self.texture(Some(used), Transfer::Linear, place)?;
+        Ok(texture.map(|texture| NormalMap {
+            texture,
+            scale: map.scale,
+        }))
+    }
+
     /// A use with KHR_texture_transform out of extensions that the parser left as they are.
     fn transformed(
         &self,
@@ -347,13 +369,13 @@ impl Materials<'_> {
         Ok(used)
     }
 
-    fn warn(&mut self, warning: String) {
+    pub(super) fn warn(&mut self, warning: String) {
         self.warnings.push(warning);
     }
 }
 
 /// How a texture reference uses its texture.
-fn usage(info: &json::texture::Info) -> Use {
+pub(super) fn usage(info: &json::texture::Info) -> Use {
     let transform = info
         .extensions
         .as_ref()
@@ -369,9 +391,4 @@ fn usage(info: &json::texture::Info) -> Use {
 
 fn uv_transform(t: &json::extensions::texture::TextureTransform) -> UvTransform {
     UvTransform::new(t.offset.0, t.rotation.0, t.scale.0)
-}
-
-/// The set of texture coordinates that a material's normal map uses, if it has a map.
-pub(super) fn normal_map_uv_set(material: &Material) -> Option<u8> {
-    material.normal_map.as_ref().map(|map| map.texture.uv_set)
 }

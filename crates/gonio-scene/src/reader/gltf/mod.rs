@@ -7,6 +7,7 @@ mod accessor;
 mod container;
 mod extension;
 mod image;
+mod layers;
 mod material;
 mod node;
 mod primitive;
@@ -131,8 +132,7 @@ impl Reader<'_, '_> {
                 Some(given) => given,
                 None => self.material(own)?,
             };
-            let tangents_for =
-                material::normal_map_uv_set(&self.builder.materials()[material as usize]);
+            let tangents_for = self.builder.materials()[material as usize].tangents_uv_set();
             if primitive.targets.as_ref().is_some_and(|t| !t.is_empty()) {
                 self.builder
                     .warn("morph targets are not applied: meshes have their base form");

@@ -19,8 +19,8 @@ pub(super) enum Read {
 
 /// Reads a primitive.
 ///
-/// - `tangents_for`: the set of texture coordinates that the material's normal map uses, if it has one and the primitive
-///   must therefore have tangents
+/// - `tangents_for`: the set of texture coordinates that tangents follow, if the material has a normal map or is anisotropic and the
+///   primitive must therefore have tangents
 ///
 /// Without normals the triangles are flat, as glTF 2.0 section 3.7.2.1 asks.
 ///

@@ -136,16 +136,16 @@ fn required_extensions_are_named() {
     );
     assert!(draco.help().unwrap().contains("without mesh compression"));
     let folder = Folder::new();
-    let coat = document(|d| {
-        d["extensionsUsed"] = json!(["KHR_materials_clearcoat"]);
-        d["extensionsRequired"] = json!(["KHR_materials_clearcoat"]);
+    let prism = document(|d| {
+        d["extensionsUsed"] = json!(["KHR_materials_dispersion"]);
+        d["extensionsRequired"] = json!(["KHR_materials_dispersion"]);
     });
-    let scene = folder.load(&coat, &sound()).unwrap();
+    let scene = folder.load(&prism, &sound()).unwrap();
     assert!(
         scene
             .warnings
             .iter()
-            .any(|w| w.contains("KHR_materials_clearcoat") && w.contains("required"))
+            .any(|w| w.contains("KHR_materials_dispersion") && w.contains("required"))
     );
 }
 

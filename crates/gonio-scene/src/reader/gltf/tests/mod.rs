@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 mod bad;
+mod layers;
 
 /// One triangle in the plane z = 0, with texture coordinates, and whatever else `change` makes of it.
 fn document(change: impl FnOnce(&mut Value)) -> Value {
@@ -165,9 +166,9 @@ fn materials_lights_and_cameras_are_mapped() {
         d["materials"][0] = json!({
             "name": "glow", "doubleSided": true, "alphaMode": "MASK", "alphaCutoff": 0.25,
             "emissiveFactor": [1, 0.5, 0], "pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.4, 0.6, 0.5], "roughnessFactor": 0.3, "metallicFactor": 0},
-            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8}, "KHR_materials_ior": {"ior": 1.33}, "KHR_materials_sheen": {}}
+            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8}, "KHR_materials_ior": {"ior": 1.33}, "KHR_materials_odd": {}}
         });
-        d["extensionsUsed"] = json!(["KHR_materials_sheen", "KHR_lights_punctual", "EXT_odd"]);
+        d["extensionsUsed"] = json!(["KHR_materials_odd", "KHR_lights_punctual", "EXT_odd"]);
         d["extensions"] = json!({"KHR_lights_punctual": {"lights": [
             {"type": "point", "intensity": 3, "color": [1, 0, 0]}, {"type": "directional", "intensity": 2},
             {"type": "spot", "spot": {"outerConeAngle": 0.5}}
@@ -215,7 +216,7 @@ fn materials_lights_and_cameras_are_mapped() {
     assert_eq!(names, [("eye", Some(1.5)), ("flat", Some(2.0))]);
     let all = scene.warnings.join("\n");
     assert!(
-        all.contains("KHR_materials_sheen is not mapped: 1 material is")
+        all.contains("KHR_materials_odd is not mapped: 1 material is")
             && all.contains("EXT_odd")
             && all.contains("1 cd"),
         "{all}"
