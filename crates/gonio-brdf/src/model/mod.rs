@@ -1,7 +1,7 @@
 //! The models, one file each, and [`Model`], the enum that holds any of them.
 //!
 //! To add one: write its file beside these, with its formula, its `INFO` and its tests; then add its `mod` line and its
-//! line in `models!` below. One that is made of other models stands after `composites` and is a [`Composite`].
+//! line in `models!` below. One that is made of other models stands after `composites` and is a `Composite`.
 
 pub mod ashikhmin_premoze;
 pub mod ashikhmin_shirley;

@@ -72,7 +72,7 @@ fn over_root(gamma: f64, pole: f64) -> f64 {
     1.0 / (gamma - pole).sqrt()
 }
 
-/// The tail at a coordinate: the inverse of [`tail_coordinate`].
+/// The tail at a coordinate: the inverse of `tail_coordinate`.
 pub fn tail_at(shape: Shape, x: f64) -> f64 {
     let Some(Tail {
         range: (low, high), ..

@@ -163,7 +163,7 @@ impl<R: Real> RoughSurface<R> {
     }
 
     /// A normal drawn towards `wo` (in the frame of the slope scales, above the surface): by visible normals where that is closed
-    /// form. Its density is [`RoughSurface::normal_density`].
+    /// form. Its density over the cosine to `wo` is [`RoughSurface::normal_density_over_cos`].
     #[inline(always)]
     pub fn sample_normal(&self, wo: Vec3<R>, u0: R, u1: R) -> Vec3<R> {
         match self.distribution.shape() {
