@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Values a second of processor time of Gonio's batches and of Mitsuba 3, in turn.
+"""Values a second of Gonio's batches and of Mitsuba 3, one thread each, in turn.
 
 Run from the repository root, with `pip install mitsuba==3.9.1 numpy` in the Python that runs it (the variant llvm_ad_rgb needs LLVM's
 shared library, see DRJIT_LIBLLVM_PATH):
@@ -7,8 +7,8 @@ shared library, see DRJIT_LIBLLVM_PATH):
     cargo build --release -p gonio-brdf --example throughput
     python benches/peers/bench_brdf.py [--rounds 3] [--measured FILE.bsdf ...]
 
-Both read 2^20 random pairs of directions from memory and write what they find. Of each round the median of several runs counts, and of
-the rounds the median. Mitsuba's first run, which compiles, doesn't count. The scalar variant can only be called from a loop in
+Both read 2^20 random pairs of directions from memory and write what they find. Of each round the best of 15 runs counts, which other programs
+disturb least, and of the rounds the median. Mitsuba's first run, which compiles, doesn't count. The scalar variant can only be called from a loop in
 Python, which takes most of its time; it is far slower.
 """
 
@@ -79,14 +79,14 @@ def mitsuba(scene):
     rates = {}
     for name, run in runs.items():
         times = []
-        for _ in range(10):
-            start = time.process_time()
+        for _ in range(16):
+            start = time.perf_counter()
             result = run()
             dr.eval(result)
             dr.sync_thread()
-            times.append(time.process_time() - start)
+            times.append(time.perf_counter() - start)
             del result
-        rates[name] = COUNT / statistics.median(times[1:]) / 1e6
+        rates[name] = COUNT / min(times[1:]) / 1e6
     return rates
 
 

@@ -14,7 +14,7 @@ Differences between the two renderers that this has to bridge:
   rows on both sides of the horizon, at whose edge the radiance usually jumps.
 - A medium belongs to a shape in Mitsuba, inside or outside of it; in Gonio it is a parameter of the boundary's material, and what lies in the
   body needs to say nothing.
-- Mitsuba's masking is Smith's, separable, without light that facets pass on: `masking = "smith"`, `interreflection = "off"`.
+- Mitsuba's masking is Smith's, separable, without light that facets pass on: `masking = "smith"`, `interreflection = "none"`.
 - Shapes that name no material are `diffuse` of 0.5, or black if they are lights.
 """
 
@@ -122,7 +122,7 @@ def _model(bsdf, absorption=None):
         return f'model = "lambertian"\nparams = {{ reflectance = {_list(_rgb(bsdf["reflectance"]))} }}'
     if bsdf["type"] != "roughconductor" or bsdf.get("distribution", "beckmann") != "ggx":
         raise ValueError(f"no equal of the material {bsdf}")
-    common = f'alpha = {float(bsdf["alpha"])!r}, masking = "smith", interreflection = "off"'
+    common = f'alpha = {float(bsdf["alpha"])!r}, masking = "smith", interreflection = "none"'
     if bsdf["material"] == "none":
         if len(set(_rgb(bsdf["specular_reflectance"]))) != 1:
             raise ValueError("only grey specular_reflectance is written")

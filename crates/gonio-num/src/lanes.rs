@@ -1,7 +1,7 @@
 //! [`Lanes`], several `f32` side by side, one formula for all of them.
 //!
 //! A `Lanes` is a plain array; each operation is a loop over its lanes that the compiler turns into vector
-//! instructions of the function it stands in (see [`dispatch`](crate::dispatch)). Every operation does in every lane
+//! instructions of the function it stands in (see [`dispatch`]). Every operation does in every lane
 //! what `f32` does, to the bit.
 
 // Loops over an index are what vectorises: no closure and no iterator stands between the loop and its instruction set.

@@ -237,7 +237,7 @@ impl<R: Real, const N: usize> Bagher<R, N> {
         let mut f = grey(R::zero());
         for n in 0..N {
             let g = self.masking.g1(n, theta_i) * self.masking.g1(n, theta_o);
-            let lobe = self.normals[n].density(half.h) * self.fresnel(n, half.cos) * g * over;
+            let lobe = self.normals[n].density_of(half) * self.fresnel(n, half.cos) * g * over;
             f[n] = R::lit(FRAC_1_PI) * self.diffuse[n] + self.specular[n] * lobe;
         }
         only_where(above(wi, wo), f)
@@ -251,7 +251,7 @@ impl<R: Real, const N: usize> Bagher<R, N> {
         let mut density = diffuse * cosine_hemisphere_density(wi);
         for n in 0..N {
             total = total + lobes[n];
-            let d = self.normals[n].normal_density(half.h, R::zero());
+            let d = self.normals[n].normal_density(half.h(), R::zero());
             density = density + lobes[n] * (d * over);
         }
         R::select(above(wi, wo), density / total, R::zero())
@@ -349,7 +349,7 @@ mod tests {
             around_axis(0.55, 0.4f64.sin(), 0.4f64.cos()),
         );
         let f = m.eval(wi, wo);
-        let h = Half::new(wi, wo).h;
+        let h = Half::new(wi, wo).h();
         for (k, p) in [0.3, 0.6, 1.2].into_iter().enumerate() {
             let d = Distribution::new(Shape::ShiftedGamma, a[k].sqrt(), a[k].sqrt(), p);
             let expected = d.density(h) / (PI * wi.z * wo.z);

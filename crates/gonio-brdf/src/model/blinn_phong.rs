@@ -154,7 +154,7 @@ impl<R: Real, const N: usize> BlinnPhong<R, N> {
     #[inline(always)]
     fn half(&self, wi: Vec3<R>, wo: Vec3<R>) -> (Half<R>, R) {
         let half = Half::new(wi, wo);
-        let density = cosine_power_hemisphere_density(half.h, self.constants.exponent);
+        let density = cosine_power_hemisphere_density(half.h(), self.constants.exponent);
         (half, density)
     }
 }

@@ -10,7 +10,7 @@ use crate::part::masking::{Masking, visibility_from_areas};
 use crate::part::rough::RoughSurface;
 use crate::part::slopes::{ROTATION_DEG, ROUGHNESS};
 use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
-use gonio_num::{Real, Vec3};
+use gonio_num::{Real, Vec3, Work};
 use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density};
 use std::f64::consts::FRAC_1_PI;
 
@@ -431,10 +431,7 @@ impl<R: Real, const N: usize> Disney<R, N> {
     fn value_across(&self, pair: &FacetPair<R>) -> [R; N] {
         let d = &self.derived;
         let [i, o] = pair.up;
-        let half = Half {
-            h: pair.h,
-            cos: pair.reflected_cosine(),
-        };
+        let half = Half::of(pair.h, pair.reflected_cosine());
         let facets = R::select(pair.valid(), pair.reflection(&self.surface), R::zero());
         let f = pair.fresnel(self.ior);
         let inner = d.glass * f * facets;
@@ -460,10 +457,7 @@ impl<R: Real, const N: usize> Disney<R, N> {
         let facets = pair.density(&self.surface, p);
         let facets = R::select(pair.valid(), facets, R::zero());
         let [body, specular, coat] = self.shares(o.z);
-        let half = Half {
-            h: pair.h,
-            cos: pair.reflected_cosine(),
-        };
+        let half = Half::of(pair.h, pair.reflected_cosine());
         let beside = body * cosine_hemisphere_density(i) + coat * self.coat.density(&half);
         let outer = specular * facets + R::select(pair.reflects(), beside, R::zero());
         let density = R::select(inside, facets, outer);
@@ -476,11 +470,31 @@ impl<R: Real, const N: usize> Disney<R, N> {
     #[inline(always)]
     fn density_outer(&self, wi: Vec3<R>, wo: Vec3<R>, half: &Half<R>, d: R) -> R {
         let [body, specular, coat] = self.shares(wo.z);
-        let facets = R::lit(0.25)
-            * self
-                .surface
-                .normal_density_over_cos(half.h, d, wo, half.cos);
+        let facets = R::lit(0.25) * self.surface.normal_density_over_cos(half, d, wo);
         body * cosine_hemisphere_density(wi) + specular * facets + coat * self.coat.density(half)
+    }
+}
+
+/// [`Disney::value_across`] for glass, which is not part of an opaque surface's code.
+struct ValueAcross<'a, R: Real, const N: usize>(&'a Disney<R, N>, Vec3<R>, Vec3<R>);
+/// [`Disney::density_across`], the same way.
+struct DensityAcross<'a, R: Real, const N: usize>(&'a Disney<R, N>, Vec3<R>, Vec3<R>);
+
+impl<R: Real, const N: usize> Work for ValueAcross<'_, R, N> {
+    type Output = [R; N];
+    #[inline(always)]
+    fn run(self) -> [R; N] {
+        let Self(model, wi, wo) = self;
+        model.value_across(&FacetPair::new(&model.surface, model.ior, wi, wo))
+    }
+}
+
+impl<R: Real, const N: usize> Work for DensityAcross<'_, R, N> {
+    type Output = R;
+    #[inline(always)]
+    fn run(self) -> R {
+        let Self(model, wi, wo) = self;
+        model.density_across(&FacetPair::new(&model.surface, model.ior, wi, wo))
     }
 }
 
@@ -488,12 +502,12 @@ impl<R: Real, const N: usize> Brdf<R, N> for Disney<R, N> {
     #[inline(always)]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
         if self.transmits {
-            return self.value_across(&FacetPair::new(&self.surface, self.ior, wi, wo));
+            return R::out_of_line(ValueAcross(self, wi, wo));
         }
         let (i, o) = (self.surface.into_axes(wi), self.surface.into_axes(wo));
         let half = Half::new(i, o);
         let surface = &self.surface;
-        let facets = surface.distribution.density(half.h)
+        let facets = surface.distribution.density_of(&half)
             * visibility_from_areas(surface.masking, &surface.distribution, i, o);
         only_where(above(wi, wo), self.outer(i, o, &half, facets))
     }
@@ -501,11 +515,11 @@ impl<R: Real, const N: usize> Brdf<R, N> for Disney<R, N> {
     #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
         if self.transmits {
-            return self.density_across(&FacetPair::new(&self.surface, self.ior, wi, wo));
+            return R::out_of_line(DensityAcross(self, wi, wo));
         }
         let (i, o) = (self.surface.into_axes(wi), self.surface.into_axes(wo));
         let half = Half::new(i, o);
-        let d = self.surface.distribution.density(half.h);
+        let d = self.surface.distribution.density_of(&half);
         let density = self.density_outer(i, o, &half, d);
         R::select(above(wi, wo), density, R::zero())
     }
@@ -513,13 +527,15 @@ impl<R: Real, const N: usize> Brdf<R, N> for Disney<R, N> {
     #[inline(always)]
     fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
         if self.transmits {
-            let pair = FacetPair::new(&self.surface, self.ior, wi, wo);
-            return (self.value_across(&pair), self.density_across(&pair));
+            return (
+                R::out_of_line(ValueAcross(self, wi, wo)),
+                R::out_of_line(DensityAcross(self, wi, wo)),
+            );
         }
         let (i, o) = (self.surface.into_axes(wi), self.surface.into_axes(wo));
         let half = Half::new(i, o);
         let surface = &self.surface;
-        let d = surface.distribution.density(half.h);
+        let d = surface.distribution.density_of(&half);
         let facets = d * visibility_from_areas(surface.masking, &surface.distribution, i, o);
         let (f, density) = (
             self.outer(i, o, &half, facets),

@@ -74,7 +74,7 @@ impl<R: Real, const N: usize> LowMicrofacet<R, N> {
         Pair {
             up: above(wi, wo),
             half,
-            s: self.constants.falloff.value(versine(half.h)),
+            s: self.constants.falloff.value(versine(half.h())),
         }
     }
 

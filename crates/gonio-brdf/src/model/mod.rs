@@ -224,8 +224,6 @@ models! {
     SheenCharlie: sheen_charlie,
     /// Zeltner, Burley & Chiang 2022: sheen of a fibre layer.
     SheenLtc: sheen_ltc,
-    /// Belcour et al. 2014: a lobe back towards the light.
-    RetroReflective: retro_reflective,
     /// A cartoon shader (T20).
     Toon: toon,
     /// Gooch et al. 1998: warm and cool tones of technical illustration (T20).
@@ -241,6 +239,8 @@ models! {
     Mix: mix,
     /// A model times a colour.
     Scaled: scaled,
+    /// Belcour et al. 2014: a lobe back towards the light.
+    RetroReflective: retro_reflective,
     /// A coat of varnish over a model (T9b).
     Coat: coat,
     /// OpenPBR Surface 1.1.
@@ -279,7 +279,7 @@ impl<R: Number, const N: usize> Model<R, N> {
             Self::Scaled(scaled) => scaled.of.is_recordable(),
             Self::Coat(coat) => coat.base().is_recordable(),
             Self::TorranceSparrow(facets) => facets.is_recordable(),
-            Self::RetroReflective(turned) => turned.lobe.is_recordable(),
+            Self::RetroReflective(turned) => turned.is_recordable(),
             other => other.info().recordable,
         }
     }

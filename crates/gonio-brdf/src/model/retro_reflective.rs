@@ -1,9 +1,11 @@
 //! A retro-reflective lobe: microfacets that send light back to where it came from.
 
+use super::Composite;
 use super::torrance_sparrow::{self, TorranceSparrow};
 use crate::part::geometry::mirrored;
-use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, Number, Sample};
+use crate::{Brdf, BrdfError, Declares, Model, ModelInfo, ModelSpec, Number, Sample};
 use gonio_num::{Real, Vec3};
+use std::marker::PhantomData;
 
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
@@ -34,46 +36,67 @@ fn declares(spec: &ModelSpec) -> Declares {
 ///
 /// Sampling: that of the mirrored lobe.
 #[derive(Debug, Clone)]
-pub struct RetroReflective<R: Real, const N: usize> {
+pub struct RetroReflective<R: Real, const N: usize, P = Model<R, N>> {
     /// The lobe that is turned back.
-    pub lobe: TorranceSparrow<R, N>,
+    lobe: Box<P>,
+    colours: PhantomData<[R; N]>,
 }
 
 impl<R: Number, const N: usize> RetroReflective<R, N> {
     pub(crate) fn from_spec(spec: &ModelSpec) -> Result<Self, BrdfError> {
-        let lobe = TorranceSparrow::from_spec(spec)?;
-        Ok(Self { lobe })
+        Ok(Self {
+            lobe: Box::new(Model::TorranceSparrow(TorranceSparrow::from_spec(spec)?)),
+            colours: PhantomData,
+        })
     }
-}
 
-impl<R: Real, const N: usize> RetroReflective<R, N> {
-    pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> RetroReflective<S, N> {
-        let lobe = self.lobe.cast(f);
-        RetroReflective { lobe }
+    /// Whether the lobe's formula can be written down.
+    pub(crate) fn is_recordable(&self) -> bool {
+        self.lobe.is_recordable()
     }
 
     pub(crate) fn set(&mut self, parameter: &str, value: [R; 3]) {
-        self.lobe.set(parameter, value);
+        if let Model::TorranceSparrow(lobe) = &mut *self.lobe {
+            lobe.set(parameter, value);
+        }
     }
 }
 
-impl<R: Number, const N: usize> Brdf<R, N> for RetroReflective<R, N> {
-    #[inline(always)]
+impl<R: Real, const N: usize> Composite<R, N> for RetroReflective<R, N> {
+    type With<S: Real, P: Brdf<S, N>> = RetroReflective<S, N, P>;
+
+    fn with<'a, S: Real, P: Brdf<S, N>>(
+        &'a self,
+        _number: &impl Fn(R) -> S,
+        part: &impl Fn(&'a Model<R, N>) -> P,
+    ) -> RetroReflective<S, N, P>
+    where
+        R: 'a,
+    {
+        RetroReflective {
+            lobe: Box::new(part(&self.lobe)),
+            colours: PhantomData,
+        }
+    }
+}
+
+impl<R: Real, const N: usize, P: Brdf<R, N>> Brdf<R, N> for RetroReflective<R, N, P> {
+    #[inline]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
         self.lobe.eval(mirrored(wi), wo)
     }
 
-    #[inline(always)]
+    #[inline]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
         self.lobe.pdf(mirrored(wi), wo)
     }
 
-    #[inline(always)]
+    #[inline]
     fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
         self.lobe.eval_and_pdf(mirrored(wi), wo)
     }
 
-    #[inline(always)]
+    #[inline]
     fn sample(&self, wo: Vec3<R>, u: [R; 3]) -> Sample<R, N> {
         let s = self.lobe.sample(wo, u);
         Sample {
@@ -82,7 +105,7 @@ impl<R: Number, const N: usize> Brdf<R, N> for RetroReflective<R, N> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn albedo_estimate(&self, wo: Vec3<R>) -> R {
         self.lobe.albedo_estimate(wo)
     }
@@ -91,7 +114,6 @@ impl<R: Number, const N: usize> Brdf<R, N> for RetroReflective<R, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Model;
     use gonio_radiometry::warp::around_axis;
 
     fn model(text: &str) -> Model<f64, 3> {

@@ -200,7 +200,7 @@ impl<R: Real, const N: usize> SheenCharlie<R, N> {
 impl<R: Real, const N: usize> Brdf<R, N> for SheenCharlie<R, N> {
     #[inline(always)]
     fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
-        let d = self.distribution(Half::new(wi, wo).h);
+        let d = self.distribution(Half::new(wi, wo).h());
         let f = scale(self.color, d * self.masking(wi, wo));
         only_where(above(wi, wo), f)
     }

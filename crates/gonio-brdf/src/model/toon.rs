@@ -139,7 +139,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for Toon<R, N> {
         // q(x)/x ≤ 2, and 0 for x below half a band: the division is guarded by the smallest such x.
         let step = (wi.z * self.bands + R::lit(0.5)).floor();
         let diffuse = step / (self.bands * wi.z).max(R::lit(0.01));
-        let lit = R::from_mask(half.h.z.ge(self.cos_edge) & self.cos_edge.lt(R::one()));
+        let lit = R::from_mask(half.h().z.ge(self.cos_edge) & self.cos_edge.lt(R::one()));
         let f = add(
             scale(self.banded(wo), diffuse * R::lit(FRAC_1_PI)),
             scale(self.specular, lit * R::lit(FRAC_1_PI)),
@@ -150,7 +150,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for Toon<R, N> {
     #[inline(always)]
     fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
         let half = Half::new(wi, wo);
-        let inside = half.h.z.ge(self.cos_edge) & self.cos_edge.lt(R::one());
+        let inside = half.h().z.ge(self.cos_edge) & self.cos_edge.lt(R::one());
         // Half vectors uniform in the cone of 2π(1 − cos edge) sr, times dh/dωi = 1/(4 cosθ′).
         let cone = (R::one() - self.cos_edge).max(R::lit(1e-12)) * R::lit(8.0 * PI);
         let spot = (cone * half.cos.max(R::lit(1e-15))).recip();

@@ -160,7 +160,7 @@ impl<R: Number, const N: usize> TorranceSparrow<R, N> {
             wi,
             wo,
             half,
-            d: self.surface.distribution.density(half.h),
+            d: self.surface.distribution.density_of(&half),
         }
     }
 
@@ -210,10 +210,7 @@ impl<R: Number, const N: usize> TorranceSparrow<R, N> {
     #[inline(always)]
     fn density(&self, pair: &Pair<R>, loose: &Loose<R>) -> R {
         let half = &pair.half;
-        let facets = R::lit(0.25)
-            * self
-                .surface
-                .normal_density_over_cos(half.h, pair.d, pair.wo, half.cos);
+        let facets = R::lit(0.25) * self.surface.normal_density_over_cos(half, pair.d, pair.wo);
         match &self.interreflection {
             Interreflection::KullaConty(_) | Interreflection::RandomWalk(_) => loose
                 .probability

@@ -89,7 +89,7 @@ fn over_normals(d: &Distribution<f64>, masking: Masking, wo: Vec3<f64>) -> f64 {
             let cos_d = wo.dot(h);
             let wi = wo.reflect(h);
             if cos_d > 0.0 && wi.z > 0.0 {
-                let half = Half { h, cos: cos_d };
+                let half = Half::of(h, cos_d);
                 ring += visibility(masking, d, wi, wo, &half) * wi.z * cos_d;
             }
         }
@@ -113,7 +113,7 @@ fn sample_weight(d: &Distribution<f64>, masking: Masking, wo: Vec3<f64>, u0: f64
     if cos <= 0.0 || wi.z <= 0.0 {
         return 0.0;
     }
-    let half = Half { h, cos };
+    let half = Half::of(h, cos);
     // Visible normals have the density D G₁(ωr)/(4 cosθr) of ωi; all have that of the normal over 4 cosθ′.
     let density = d.density(h);
     let pdf = if visible {

@@ -265,7 +265,7 @@ impl<R: Real, const N: usize> AshikhminLobe<R, N> {
             wi,
             wo,
             half,
-            p: self.halves.density(half.h),
+            p: self.halves.density(half.h()),
         }
     }
 

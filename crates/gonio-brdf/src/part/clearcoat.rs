@@ -52,7 +52,7 @@ impl<R: Real> Clearcoat<R> {
     pub fn value(&self, wi: Vec3<R>, wo: Vec3<R>, half: &Half<R>) -> R {
         let g = area(wi.z) * area(wo.z);
         let f = schlick(half.cos, R::lit(F0), R::one());
-        R::lit(0.25) * f * self.distribution(half.h) / g.max(R::lit(1e-20))
+        R::lit(0.25) * f * self.distribution(half.h()) / g.max(R::lit(1e-20))
     }
 
     /// About what it reflects.
@@ -64,7 +64,7 @@ impl<R: Real> Clearcoat<R> {
     /// Density of the directions of [`Clearcoat::sample`] in sr⁻¹.
     #[inline(always)]
     pub fn density(&self, half: &Half<R>) -> R {
-        let d = self.distribution(half.h) * half.h.z;
+        let d = self.distribution(half.h()) * half.h().z;
         R::lit(0.25) * d / half.cos.max(R::lit(1e-15))
     }
 

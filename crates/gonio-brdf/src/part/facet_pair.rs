@@ -1,7 +1,7 @@
 //! [`FacetPair`], two directions on either side of a rough boundary and the facet that takes light from one to the other.
 
 use super::fresnel::{dielectric, dielectric_cosines};
-use super::geometry::{flipped_where, refracted_about};
+use super::geometry::{Half, flipped_where, refracted_about};
 use super::masking::{visibility_across, visibility_from_areas};
 use super::rough::RoughSurface;
 use gonio_num::{Real, Vec3};
@@ -122,7 +122,8 @@ impl<R: Real> FacetPair<R> {
     #[inline(always)]
     pub fn density(&self, surface: &RoughSurface<R>, p: R) -> R {
         let co = self.cos[1].abs();
-        let over_cos = surface.normal_density_over_cos(self.h, self.d, self.up[1], co);
+        let half = Half::of(self.h, co);
+        let over_cos = surface.normal_density_over_cos(&half, self.d, self.up[1]);
         let reflected = R::lit(0.25) * over_cos * p;
         let n2 = self.n[0] * self.n[0];
         let through = over_cos * co * (R::one() - p) * n2 * self.cos[0].abs() / self.length2;

@@ -11,8 +11,10 @@ pub fn above<R: Real>(wi: Vec3<R>, wo: Vec3<R>) -> R::Mask {
 /// The half vector of two directions and the angle that it makes with either.
 #[derive(Debug, Clone, Copy)]
 pub struct Half<R> {
-    /// (ωi + ωr) / |ωi + ωr|, unit.
-    pub h: Vec3<R>,
+    /// ωi + ωr, or anything along it.
+    pub sum: Vec3<R>,
+    /// |sum|².
+    pub length2: R,
     /// cosθ′ = ωi·h = ωr·h, in (0, 1].
     pub cos: R,
 }
@@ -26,14 +28,31 @@ impl<R: Real> Half<R> {
     pub fn new(wi: Vec3<R>, wo: Vec3<R>) -> Self {
         let sum = wi + wo;
         let length2 = sum.length_squared();
-        let length = length2.max(R::lit(1e-30)).sqrt();
-        // Opposite and both grazing to 1e-15: any half vector is as good as another.
-        let lost = length2.lt(R::lit(1e-30));
-        let up = Vec3::new(R::zero(), R::zero(), R::one());
         Self {
-            h: Vec3::select(lost, up, sum * length.recip()),
-            cos: (length * R::lit(0.5)).min(R::one()),
+            sum,
+            length2,
+            cos: (length2.max(R::lit(1e-30)).sqrt() * R::lit(0.5)).min(R::one()),
         }
+    }
+
+    /// Of a unit half vector.
+    #[inline(always)]
+    pub fn of(h: Vec3<R>, cos: R) -> Self {
+        Self {
+            sum: h,
+            length2: R::one(),
+            cos,
+        }
+    }
+
+    /// h = (ωi + ωr) / |ωi + ωr|, unit.
+    #[inline(always)]
+    pub fn h(&self) -> Vec3<R> {
+        let length2 = self.length2.max(R::lit(1e-30));
+        // Opposite and both grazing to 1e-15: any half vector is as good as another.
+        let lost = self.length2.lt(R::lit(1e-30));
+        let up = Vec3::new(R::zero(), R::zero(), R::one());
+        Vec3::select(lost, up, self.sum * length2.sqrt().recip())
     }
 }
 

@@ -102,7 +102,7 @@ pub fn visibility<R: Real>(
 /// [`visibility`] of V-cavities: G = min(1, 2 h.z ωr.z/cosθ′, 2 h.z ωi.z/cosθ′).
 #[inline(always)]
 pub fn v_cavity<R: Real>(wi: Vec3<R>, wo: Vec3<R>, half: &Half<R>) -> R {
-    let groove = R::lit(2.0) * half.h.z * wi.z.min(wo.z);
+    let groove = R::lit(2.0) * half.h().z * wi.z.min(wo.z);
     let g = R::one().min(groove / half.cos.max(R::lit(1e-15)));
     R::lit(0.25) * g / (wi.z * wo.z).max(R::lit(TINY))
 }

@@ -475,7 +475,7 @@ mod tests {
         let error = ((squares / f64::from(n) - mean * mean) / f64::from(n)).sqrt();
         let half = Half::new(wi, wo);
         let expected =
-            d.density(half.h) * visibility(Masking::SmithCorrelated, &d, wi, wo, &half) * wi.z;
+            d.density_of(&half) * visibility(Masking::SmithCorrelated, &d, wi, wo, &half) * wi.z;
         assert!(
             (mean - expected).abs() < 5.0 * error,
             "{mean} {expected} {error}"

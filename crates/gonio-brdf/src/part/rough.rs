@@ -1,6 +1,7 @@
 //! [`RoughSurface`], the facets of a rough surface: their distribution, masking and direction, and the parameters for them.
 
 use super::distribution::{Distribution, Shape};
+use super::geometry::Half;
 use super::masking::Masking;
 use super::slopes::{self, Slopes};
 use crate::{BrdfError, ModelSpec, ParameterInfo};
@@ -175,12 +176,11 @@ impl<R: Real> RoughSurface<R> {
     /// The density of [`RoughSurface::sample_normal`] in sr⁻¹, over `cos`.
     ///
     /// - `d`: D(h)
-    /// - `cos`: wo·h
     #[inline(always)]
-    pub fn normal_density_over_cos(&self, h: Vec3<R>, d: R, wo: Vec3<R>, cos: R) -> R {
+    pub fn normal_density_over_cos(&self, half: &Half<R>, d: R, wo: Vec3<R>) -> R {
         match self.distribution.shape() {
             Shape::Ggx => d * super::masking::smith_g1_over_cos(&self.distribution, wo),
-            _ => self.distribution.normal_density(h, d) / cos.max(R::lit(1e-15)),
+            _ => self.distribution.normal_density(half.h(), d) / half.cos.max(R::lit(1e-15)),
         }
     }
 }

@@ -83,14 +83,14 @@ impl<R: Real, const N: usize> WardLobe<R, N> {
             wi,
             wo,
             half,
-            d: self.distribution().density(half.h),
+            d: self.distribution().density_of(&half),
         }
     }
 
     /// kd/π + ks·exp(…)/(4π αx αy)·`factor` above the horizon.
     #[inline(always)]
     pub(crate) fn value(&self, pair: &Pair<R>, factor: R) -> [R; N] {
-        let z2 = pair.half.h.z * pair.half.h.z;
+        let z2 = pair.half.h().z * pair.half.h().z;
         let lobe = R::lit(0.25) * pair.d * (z2 * z2) * factor;
         let diffuse = scale(self.diffuse, R::lit(FRAC_1_PI));
         only_where(
@@ -104,7 +104,7 @@ impl<R: Real, const N: usize> WardLobe<R, N> {
     /// - `gain`: an estimate of the lobe's albedo for ks = 1
     #[inline(always)]
     pub(crate) fn density(&self, pair: &Pair<R>, gain: R) -> R {
-        let lobe = R::lit(0.25) * pair.d * pair.half.h.z / pair.half.cos.max(R::lit(1e-15));
+        let lobe = R::lit(0.25) * pair.d * pair.half.h().z / pair.half.cos.max(R::lit(1e-15));
         let diffuse = cosine_hemisphere_density(pair.wi);
         let mixed = self.diffuse_probability(gain).lerp(lobe, diffuse);
         R::select(above(pair.wi, pair.wo), mixed, R::zero())

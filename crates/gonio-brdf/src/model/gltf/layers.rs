@@ -382,11 +382,8 @@ impl<R: Real> Coat<R> {
     #[inline(always)]
     pub(super) fn lobe(&self, wi: Vec3<R>, wo: Vec3<R>, half: &Half<R>) -> (R, R) {
         let (i, o) = (self.local(wi), self.local(wo));
-        let half = Half {
-            h: self.local(half.h),
-            cos: half.cos,
-        };
-        let d = self.distribution.density(half.h);
+        let half = Half::of(self.local(half.h()), half.cos);
+        let d = self.distribution.density_of(&half);
         let mut f = d * visibility(Masking::Smith, &self.distribution, i, o, &half);
         let mut density = R::lit(0.25) * d * smith_g1_over_cos(&self.distribution, o);
         if self.frame.is_some() {

@@ -218,7 +218,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for Gltf<R, N> {
             return R::out_of_line(EvalWhole(self, wi, wo)).0;
         }
         let half = Half::new(wi, wo);
-        self.value(wi, wo, &half, self.distribution.density(half.h))
+        self.value(wi, wo, &half, self.distribution.density_of(&half))
     }
 
     #[inline(always)]
@@ -227,7 +227,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for Gltf<R, N> {
             return R::out_of_line(EvalWhole(self, wi, wo)).1;
         }
         let half = Half::new(wi, wo);
-        self.density(wi, wo, self.distribution.density(half.h))
+        self.density(wi, wo, self.distribution.density_of(&half))
     }
 
     #[inline(always)]
@@ -236,7 +236,7 @@ impl<R: Real, const N: usize> Brdf<R, N> for Gltf<R, N> {
             return R::out_of_line(EvalWhole(self, wi, wo));
         }
         let half = Half::new(wi, wo);
-        let d = self.distribution.density(half.h);
+        let d = self.distribution.density_of(&half);
         (self.value(wi, wo, &half, d), self.density(wi, wo, d))
     }
 

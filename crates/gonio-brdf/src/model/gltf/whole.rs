@@ -166,10 +166,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
     /// The coat's lobe and the density of drawing it, in the frame of the anisotropy.
     #[inline(always)]
     fn coat_of(&self, i: Vec3<R>, o: Vec3<R>, half: Half<R>) -> (R, R) {
-        let half = Half {
-            h: self.anisotropy.out_of_axes(half.h),
-            cos: half.cos,
-        };
+        let half = Half::of(self.anisotropy.out_of_axes(half.h()), half.cos);
         let i = self.anisotropy.out_of_axes(i);
         self.coat.lobe(i, self.anisotropy.out_of_axes(o), &half)
     }
@@ -232,7 +229,7 @@ impl<R: Real, const N: usize> Gltf<R, N> {
 
         // The facet: a thin wall's is that of the mirror image.
         let half = Half::new(i, o);
-        let (mut h, mut cos, mut inside) = (half.h, half.cos, viewer.inside);
+        let (mut h, mut cos, mut inside) = (half.h(), half.cos, viewer.inside);
         let mut faces = R::Mask::splat(true);
         // 4 f/(D V) and 4 p/(D G₁/cosθr) of what passes.
         let mut passing_factors = [one, one];

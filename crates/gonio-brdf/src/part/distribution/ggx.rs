@@ -17,6 +17,18 @@ pub(super) fn density<R: Real>(d: &Distribution<R>, h: Vec3<R>) -> R {
     R::lit(FRAC_1_PI) * (s * s * s) / (q * q)
 }
 
+/// D of the direction of `sum`, whose square is `length2`.
+#[inline(always)]
+pub(super) fn density_along<R: Real>(d: &Distribution<R>, sum: Vec3<R>, length2: R) -> R {
+    let (ax, ay) = (d.alpha_x, d.alpha_y);
+    // With s = αx αy and q = s² e |sum|²: s (s |sum|²/q)²/π, one division.
+    let s = ax * ay;
+    let q = (sum.x * ay).sq() + (sum.y * ax).sq() + (sum.z * s).sq();
+    let q = q.max(R::lit(0.5) * s * s * length2).max(R::lit(1e-37));
+    let t = s * length2 / q;
+    R::lit(FRAC_1_PI) * s * t * t
+}
+
 /// Slopes of length √(u1/(1 − u1)), stretched.
 #[inline(always)]
 pub(super) fn sample<R: Real>(d: &Distribution<R>, u0: R, u1: R) -> Vec3<R> {

@@ -11,6 +11,7 @@ mod student_t;
 #[cfg(test)]
 pub(super) mod tests;
 
+use super::geometry::Half;
 use super::special::integral;
 use gonio_num::{Real, Vec3, Work};
 use gonio_radiometry::warp::around_axis;
@@ -278,6 +279,15 @@ impl<R: Real> Distribution<R> {
             _ => R::out_of_line(DensityOf(self, h)),
         };
         R::select(h.z.gt(R::zero()), d, R::zero())
+    }
+
+    /// [`Distribution::density`] of a half vector above the horizon, which for GGX needn't be normalised first; 0 where it vanishes.
+    #[inline(always)]
+    pub fn density_of(&self, half: &Half<R>) -> R {
+        match self.shape {
+            Shape::Ggx => ggx::density_along(self, half.sum, half.length2),
+            _ => self.density(half.h()),
+        }
     }
 
     /// A normal of density [`Distribution::normal_density`].
