@@ -5,7 +5,7 @@ use crate::part::colour::{add, cast, each_component, grey, mean, only_where, sca
 use crate::part::dielectric::contrasted;
 use crate::part::facet_pair::{DrawnFacet, FacetPair};
 use crate::part::fresnel::dielectric;
-use crate::part::geometry::{Half, above, flipped_where};
+use crate::part::geometry::{Half, above, flipped_where, mirrored_about};
 use crate::part::masking::{Masking, visibility_from_areas};
 use crate::part::rough::RoughSurface;
 use crate::part::slopes::{ROTATION_DEG, ROUGHNESS};
@@ -172,6 +172,7 @@ pub struct Disney<R: Real, const N: usize> {
     roughness: R,
     version: Version,
     transmits: bool,
+    coated: bool,
     coat: Clearcoat<R>,
     derived: Derived<R, N>,
 }
@@ -275,6 +276,7 @@ impl<R: Real, const N: usize> Disney<R, N> {
             roughness,
             version,
             transmits: spec.number("spec_trans").unwrap_or(0.0) > 0.0,
+            coated: spec.real::<f64>("clearcoat") > 0.0,
             coat: Clearcoat::new(spec.real("clearcoat_gloss")),
             derived: Derived::zero(),
         };
@@ -297,6 +299,7 @@ impl<R: Real, const N: usize> Disney<R, N> {
             roughness: f(self.roughness),
             version: self.version,
             transmits: self.transmits,
+            coated: self.coated,
             coat: self.coat.cast(f),
             derived: self.derived.cast(f),
         }
@@ -322,7 +325,10 @@ impl<R: Real, const N: usize> Disney<R, N> {
             "specular_tint" => self.specular_tint = x,
             "sheen" => self.sheen = x,
             "sheen_tint" => self.sheen_tint = x,
-            "clearcoat" => self.clearcoat = x,
+            "clearcoat" => {
+                self.clearcoat = x;
+                self.coated = true;
+            }
             "clearcoat_gloss" => self.coat = Clearcoat::new(x),
             "spec_trans" if self.version == Version::Of2015 => {
                 self.spec_trans = x;
@@ -396,7 +402,11 @@ impl<R: Real, const N: usize> Disney<R, N> {
         let flat = R::lit(1.25) * (fss * (sum.recip() - R::lit(0.5)) + R::lit(0.5));
         let body = self.flatness.lerp(plain, flat) * R::lit(FRAC_1_PI);
         let weight = (one - half.cos).saturate().pow5();
-        let coat = self.clearcoat * self.coat.value(wi, wo, half);
+        let coat = if self.coated {
+            self.clearcoat * self.coat.value(wi, wo, half)
+        } else {
+            R::zero()
+        };
         let mut f = self.fresnel(half.cos);
         each_component!(N, k => {
             f[k] = f[k] * facets + d.diffuse[k] * body + d.sheen[k] * weight + coat;
@@ -411,7 +421,11 @@ impl<R: Real, const N: usize> Disney<R, N> {
         let through = (R::one() - dielectric(cos, self.ior)) * mean(d.through);
         let facets = mean(self.fresnel(cos)) + through + R::lit(1e-6);
         let body = mean(d.diffuse) + R::lit(0.25) * mean(d.sheen);
-        let coat = self.clearcoat * self.coat.albedo(cos);
+        let coat = if self.coated {
+            self.clearcoat * self.coat.albedo(cos)
+        } else {
+            R::zero()
+        };
         let over = (body + facets + coat).recip();
         [body * over, facets * over, coat * over]
     }
@@ -458,7 +472,7 @@ impl<R: Real, const N: usize> Disney<R, N> {
         let facets = R::select(pair.valid(), facets, R::zero());
         let [body, specular, coat] = self.shares(o.z);
         let half = Half::of(pair.h, pair.reflected_cosine());
-        let beside = body * cosine_hemisphere_density(i) + coat * self.coat.density(&half);
+        let beside = body * cosine_hemisphere_density(i) + self.coat_density(coat, &half);
         let outer = specular * facets + R::select(pair.reflects(), beside, R::zero());
         let density = R::select(inside, facets, outer);
         R::select(pair.off_horizon(), density, R::zero())
@@ -471,7 +485,17 @@ impl<R: Real, const N: usize> Disney<R, N> {
     fn density_outer(&self, wi: Vec3<R>, wo: Vec3<R>, half: &Half<R>, d: R) -> R {
         let [body, specular, coat] = self.shares(wo.z);
         let facets = R::lit(0.25) * self.surface.normal_density_over_cos(half, d, wo);
-        body * cosine_hemisphere_density(wi) + specular * facets + coat * self.coat.density(half)
+        body * cosine_hemisphere_density(wi) + specular * facets + self.coat_density(coat, half)
+    }
+
+    /// The clearcoat's part of the density, drawn with the probability `share`.
+    #[inline(always)]
+    fn coat_density(&self, share: R, half: &Half<R>) -> R {
+        if self.coated {
+            share * self.coat.density(half)
+        } else {
+            R::zero()
+        }
     }
 }
 
@@ -552,14 +576,16 @@ impl<R: Real, const N: usize> Brdf<R, N> for Disney<R, N> {
         // From inside there are only facets.
         let body = R::select(facet.inside, R::zero(), body);
         let specular = R::select(facet.inside, R::one(), specular);
-        let mut reflects = u[2].ge(R::zero());
+        let mut wi = mirrored_about(facet.wo, facet.h);
         if self.transmits {
             let rest = ((u[2] - body) / specular).saturate();
-            reflects = rest.lt(self.reflection_probability(facet.cos, facet.inside));
+            let p = self.reflection_probability(facet.cos, facet.inside);
+            wi = facet.leaving(self.ior, rest.lt(p));
         }
-        let mut wi = facet.leaving(self.ior, reflects);
-        let coat = self.coat.sample(facet.wo, [u[0], u[1]]);
-        wi = Vec3::select(u[2].ge(body + specular), coat, wi);
+        if self.coated {
+            let coat = self.coat.sample(facet.wo, [u[0], u[1]]);
+            wi = Vec3::select(u[2].ge(body + specular), coat, wi);
+        }
         let cosine = cosine_hemisphere([u[0], u[1]]);
         wi = Vec3::select(u[2].lt(body), cosine, wi);
         let wi = flipped_where(facet.inside, self.surface.out_of_axes(wi));

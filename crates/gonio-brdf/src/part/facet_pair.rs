@@ -1,6 +1,6 @@
 //! [`FacetPair`], two directions on either side of a rough boundary and the facet that takes light from one to the other.
 
-use super::fresnel::{dielectric, dielectric_cosines};
+use super::fresnel::dielectric_cosines;
 use super::geometry::{Half, flipped_where, refracted_about};
 use super::masking::{visibility_across, visibility_from_areas};
 use super::rough::RoughSurface;
@@ -19,8 +19,8 @@ pub(crate) struct FacetPair<R: Real> {
     pub n: [R; 2],
     /// The facet's normal, on the outer side.
     pub h: Vec3<R>,
-    /// |n_i ωi + n_r ωr|².
-    pub length2: R,
+    /// 1/|n_i ωi + n_r ωr|².
+    over_length2: R,
     /// ω·h of each.
     pub cos: [R; 2],
     /// D(h).
@@ -49,9 +49,9 @@ impl<R: Real> FacetPair<R> {
             inside: [R::from_mask(below[0]), R::from_mask(below[1])],
             n,
             h,
-            length2,
+            over_length2: over * over,
             cos: [w[0].dot(h), w[1].dot(h)],
-            d: surface.distribution.density(h),
+            d: surface.distribution.density_of(&Half::of(h, R::one())),
         }
     }
 
@@ -91,14 +91,23 @@ impl<R: Real> FacetPair<R> {
             self.inside[0].gt(R::lit(0.5)),
             self.inside[1].gt(R::lit(0.5)),
         ];
-        let relative = R::select(in_body[1], ior.recip(), ior);
-        let reflected = dielectric(self.reflected_cosine(), relative);
-        // From both cosines: the same for both orders of the directions.
+        let reflects = self.reflects();
+        // Of a reflected pair one cosine is known, and Snell's law gives that on the other side: outside cos²θ = η²cos² − (η² − 1), inside
+        // (cos² + η² − 1)/η².
+        let cos = self.reflected_cosine();
+        let (n2, contrast) = (ior * ior, (ior - R::one()) * (ior + R::one()));
+        let outside = n2 * cos * cos - contrast;
+        let inside = (cos * cos + contrast) / n2;
+        let far2 = R::select(in_body[1], outside, inside);
+        let far = far2.max(R::lit(1e-20)).sqrt();
+        // Of a refracted pair both are: the same for both orders of the directions.
         let [ci, co] = [self.cos[0].abs(), self.cos[1].abs()];
         let outer = R::select(in_body[0], co, ci);
         let inner = R::select(in_body[0], ci, co);
-        let through = dielectric_cosines(outer, inner, ior);
-        R::select(self.reflects(), reflected, through)
+        let outer = R::select(reflects, R::select(in_body[1], far, cos), outer);
+        let inner = R::select(reflects, R::select(in_body[1], cos, far), inner);
+        let total = reflects & far2.le(R::zero());
+        R::select(total, R::one(), dielectric_cosines(outer, inner, ior))
     }
 
     /// f of a reflected pair where F = 1: D G/(4 |cosθi cosθr|).
@@ -114,7 +123,12 @@ impl<R: Real> FacetPair<R> {
         let [i, o] = self.up;
         let across = visibility_across(surface.masking, &surface.distribution, i, o);
         let n2 = self.n[1] * self.n[1];
-        R::lit(4.0) * self.d * across * self.cos[0].abs() * self.cos[1].abs() * n2 / self.length2
+        R::lit(4.0)
+            * self.d
+            * across
+            * self.cos[0].abs()
+            * self.cos[1].abs()
+            * (n2 * self.over_length2)
     }
 
     /// Density in sr⁻¹ of wi, given wo, where facets are drawn by [`RoughSurface::sample_normal`]: as a pair that is reflected with the
@@ -126,7 +140,7 @@ impl<R: Real> FacetPair<R> {
         let over_cos = surface.normal_density_over_cos(&half, self.d, self.up[1]);
         let reflected = R::lit(0.25) * over_cos * p;
         let n2 = self.n[0] * self.n[0];
-        let through = over_cos * co * (R::one() - p) * n2 * self.cos[0].abs() / self.length2;
+        let through = over_cos * co * (R::one() - p) * self.cos[0].abs() * (n2 * self.over_length2);
         R::select(self.reflects(), reflected, through)
     }
 }

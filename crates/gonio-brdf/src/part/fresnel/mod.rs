@@ -35,9 +35,15 @@ pub fn dielectric<R: Real>(cos: R, ior: R) -> R {
     let g2 = (ior - R::one()) * (ior + R::one()) + cos * cos;
     let total = g2.le(R::zero());
     let g = g2.max(tiny).sqrt();
-    let s = (cos - g) / (cos + g).max(tiny);
-    let p = (n2 * cos - g) / (n2 * cos + g).max(tiny);
-    R::select(total, R::one(), (s * s + p * p) * R::lit(0.5))
+    let f = both_polarisations([cos - g, cos + g], [n2 * cos - g, n2 * cos + g]);
+    R::select(total, R::one(), f)
+}
+
+/// (r⊥² + r∥²)/2 of two quotients, with one division.
+#[inline(always)]
+fn both_polarisations<R: Real>(s: [R; 2], p: [R; 2]) -> R {
+    let below = (s[1] * p[1]).sq().max(R::lit(1e-30));
+    ((s[0] * p[1]).sq() + (p[0] * s[1]).sq()) * R::lit(0.5) / below
 }
 
 /// [`dielectric`] from the cosines on both sides, which must obey Snell's law: the same to the last bit from either side.
@@ -46,10 +52,8 @@ pub fn dielectric<R: Real>(cos: R, ior: R) -> R {
 /// - `ior`: index of the inner side over that of the outer
 #[inline(always)]
 pub fn dielectric_cosines<R: Real>(outer: R, inner: R, ior: R) -> R {
-    let tiny = R::lit(1e-20);
-    let s = (outer - ior * inner) / (outer + ior * inner).max(tiny);
-    let p = (ior * outer - inner) / (ior * outer + inner).max(tiny);
-    (s * s + p * p) * R::lit(0.5)
+    let s = [outer - ior * inner, outer + ior * inner];
+    both_polarisations(s, [ior * outer - inner, ior * outer + inner])
 }
 
 /// Reflectance of a smooth boundary between vacuum and an absorbing medium of index η + ik.
