@@ -12,10 +12,12 @@ What is bridged:
 
 - Mitsuba's wi is the viewer and its wo the light, and its eval includes the cosine. Its masking is Smith's, separable.
 - It computes in single precision. Where a refracting facet is seen at a grazing angle, or is the small difference of two directions, its
-  cosine has few digits left: pairs with |ω·(ωi + η ωr)| < 0.1 for either ω are left out, about one in twenty of the refracted ones.
+  cosine has few digits left: pairs with |ω·(ωi + η ωr)| < 0.2 for either ω are left out, a tenth (η = 2.4) to a quarter (1.1) of the refracted
+  ones.
 - `disney`: the density is Gonio's own choice, as is that of `rough-dielectric` with Beckmann's distribution (Mitsuba widens it). Mitsuba's
   `principled` leaves the 1/(4 cosθi cosθr) of a microfacet lobe out of its clearcoat; Burley 2012 has it. The clearcoat, the
-  difference of the values with and without it, is divided by that here, where that is above 0.25.
+  difference of the values with and without it, is divided by that here, where that is above 0.25. Its gloss is at most a
+  half, because Mitsuba's distribution takes sin² from 1 - cos², which in single precision is off by 1e-4 of a glossier peak.
 """
 
 import argparse
@@ -71,7 +73,7 @@ def cases(sets):
             "sheen_tint": draw(0, 1),
             "flatness": draw(0, 1),
         }
-        for extra in [{}, {"clearcoat": draw(0.2, 1), "clearcoat_gloss": draw(0, 1)}, {"spec_trans": draw(0.1, 0.9)}]:
+        for extra in [{}, {"clearcoat": draw(0.2, 1), "clearcoat_gloss": draw(0, 0.5)}, {"spec_trans": draw(0.1, 0.9)}]:
             ours = ",".join(f"{k}={v}" for k, v in {**values, **extra}.items())
             theirs = {k.replace("specular_tint", "spec_tint"): v for k, v in {**values, **extra}.items()}
             scene = {"type": "principled", "base_color": rgb(c), "eta": ior, **theirs}
@@ -109,7 +111,7 @@ def has_digits(rows, ior):
     total = wi * n[0] + wo * n[1]
     cosines = [np.abs(np.sum(w * total, axis=1)) for w in (wi, wo)]
     reflected = wi[:, 2] * wo[:, 2] > 0
-    return reflected | (np.minimum(*cosines) > 0.1)
+    return reflected | (np.minimum(*cosines) > 0.2)
 
 
 def largest_difference(a, b):
