@@ -1,5 +1,7 @@
 //! Disney's principled models of 2012 and 2015.
 
+mod parameters;
+
 use crate::part::clearcoat::Clearcoat;
 use crate::part::colour::{add, cast, each_component, grey, mean, only_where, scale};
 use crate::part::dielectric::contrasted;
@@ -8,15 +10,10 @@ use crate::part::fresnel::dielectric;
 use crate::part::geometry::{Half, above, flipped_where, mirrored_about};
 use crate::part::masking::{Masking, visibility_from_areas};
 use crate::part::rough::RoughSurface;
-use crate::part::slopes::{ROTATION_DEG, ROUGHNESS};
-use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, ParameterInfo, Sample};
+use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, Sample};
 use gonio_num::{Real, Vec3, Work};
 use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density};
 use std::f64::consts::FRAC_1_PI;
-
-const fn unit(name: &'static str, default: f64, meaning: &'static str) -> ParameterInfo {
-    ParameterInfo::number(name, "", (0.0, 1.0), Some(default), meaning)
-}
 
 /// What the registry knows.
 pub const INFO: ModelInfo = ModelInfo {
@@ -24,72 +21,7 @@ pub const INFO: ModelInfo = ModelInfo {
     summary: "Disney's principled model: one material for most, set by an artist's words",
     paper: "Burley 2012, \"Physically-Based Shading at Disney\"; Burley 2015, \"Extending the Disney BRDF to a BSDF with Integrated \
             Subsurface Scattering\"",
-    parameters: &[
-        ParameterInfo::colour(
-            "base_color",
-            (0.0, 1.0),
-            Some([0.8; 3]),
-            "colour of the diffuse part, F0 of the metal; its root tints what is transmitted",
-        ),
-        unit("metallic", 0.0, "0 dielectric, 1 metal"),
-        ROUGHNESS,
-        unit(
-            "anisotropic",
-            0.0,
-            "alpha_x = roughness²/a, alpha_y = roughness²·a with a = √(1 − 0.9 anisotropic)",
-        ),
-        ROTATION_DEG,
-        unit(
-            "specular",
-            0.5,
-            "F0 of the dielectric over 0.08: 0.5 is an index of 1.5",
-        ),
-        ParameterInfo::number(
-            "ior",
-            "",
-            (1.0, 4.0),
-            None,
-            "index of refraction instead of specular; version=2015",
-        ),
-        unit(
-            "specular_tint",
-            0.0,
-            "how much the hue of base_color tints F0 of the dielectric",
-        ),
-        unit("sheen", 0.0, "strength of the grazing lobe of cloth"),
-        unit(
-            "sheen_tint",
-            0.5,
-            "how much the hue of base_color tints the sheen",
-        ),
-        unit("clearcoat", 0.0, "strength of the second specular lobe"),
-        unit(
-            "clearcoat_gloss",
-            1.0,
-            "0 satin to 1 gloss: alpha from 0.1 to 0.001",
-        ),
-        ParameterInfo::number(
-            "subsurface",
-            "",
-            (0.0, 1.0),
-            None,
-            "blends the diffuse part to a flatter one after Hanrahan & Krueger; version=2012",
-        ),
-        ParameterInfo::number("flatness", "", (0.0, 1.0), None, "the same in version=2015"),
-        ParameterInfo::number(
-            "spec_trans",
-            "",
-            (0.0, 1.0),
-            None,
-            "share of the dielectric that is glass instead of diffuse; version=2015",
-        ),
-        ParameterInfo::choice(
-            "version",
-            &["2012", "2015"],
-            Some("2015"),
-            "2012: Schlick's reflectance, opaque; 2015: a dielectric's reflectance, may transmit",
-        ),
-    ],
+    parameters: parameters::PARAMETERS,
     positional: Some("base_color"),
     aliases: &[
         crate::Alias {
@@ -308,7 +240,7 @@ impl<R: Real, const N: usize> Disney<R, N> {
     pub(crate) fn set(&mut self, parameter: &str, value: [R; 3]) {
         let x = value[0];
         match parameter {
-            "base_color" => self.base_color = super::components(value),
+            "base_color" => self.base_color = crate::model::components(value),
             "metallic" => self.metallic = x,
             "roughness" => {
                 self.roughness = x;
