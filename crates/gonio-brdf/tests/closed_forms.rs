@@ -235,3 +235,97 @@ fn a_sum_is_its_parts_with_the_density_of_the_whole() {
     }
     assert!(albedo > 0.8 && albedo < 0.9, "{albedo}");
 }
+
+fn value(text: &str, wi: Vec3<f64>, wo: Vec3<f64>) -> [f64; 3] {
+    model(text).eval(wi, wo)
+}
+
+/// Light and viewer at the normal: no grazing term is left, D = 1/(π α²), G = 1.
+#[test]
+fn disney_at_the_normal_by_hand() {
+    let close = |found: f64, exact: f64| {
+        assert!((found - exact).abs() < 1e-12 * exact, "{found} {exact}");
+    };
+    for version in ["2012", "2015"] {
+        // Retro-reflection needs a grazing direction: the body is Lambertian here.
+        let f = value(
+            &format!("disney:0.3/0.5/0.7,specular=0,roughness=0.6,version={version}"),
+            UP,
+            UP,
+        );
+        for (f, c) in f.into_iter().zip([0.3, 0.5, 0.7]) {
+            close(f, c / PI);
+        }
+        let metal = format!("disney:0.3/0.5/0.7,metallic=1,roughness=0.5,version={version}");
+        for (f, c) in value(&metal, UP, UP).into_iter().zip([0.3, 0.5, 0.7]) {
+            close(f, c / (4.0 * PI * 0.0625));
+        }
+        // α = 0.001 for a clearcoat of full gloss; D(1) = (α² − 1)/(π ln α² α²).
+        let coated = value(&(metal.clone() + ",clearcoat=0.5"), UP, UP)[0];
+        let a2: f64 = 1e-6;
+        let peak = (a2 - 1.0) / (PI * a2.ln() * a2);
+        close(
+            coated,
+            0.3 / (4.0 * PI * 0.0625) + 0.5 * 0.25 * 0.04 * peak / 4.0,
+        );
+    }
+}
+
+/// Without colour all of Disney's dielectric that transmits is Walter's rough one.
+#[test]
+fn disney_glass_is_rough_glass() {
+    let disney = "disney:1,spec_trans=1,ior=1.4,roughness=0.5";
+    let glass = "rough-dielectric:ior=1.4,roughness=0.5,masking=smith,interreflection=none";
+    let w = [
+        Vec3::new(0.6, 0.0, 0.8),
+        Vec3::new(0.0, 0.28, 0.96),
+        Vec3::new(-0.48, 0.36, -0.8),
+        Vec3::new(0.0, -0.6, -0.8),
+    ];
+    for wi in w {
+        for wo in w {
+            let (f, g) = (value(disney, wi, wo)[1], value(glass, wi, wo)[1]);
+            assert!((f - g).abs() <= 1e-12 * g, "{wi:?} {wo:?}: {f} {g}");
+        }
+    }
+}
+
+/// One slab at a time, OpenPBR is the model of that slab.
+#[test]
+fn openpbr_of_one_slab_is_that_slab() {
+    let (wi, wo) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.28, 0.96));
+    for (text, slab) in [
+        (
+            "openpbr:base_metalness=1,base_color=0.9/0.6/0.3,specular_roughness=0.5",
+            "ggx:f0=0.9/0.6/0.3,roughness=0.5",
+        ),
+        (
+            "openpbr:base_metalness=1,base_color=0.9,specular_color=0.5,specular_roughness=0.5",
+            "ggx:f0=0.9,f82=0.5,roughness=0.5",
+        ),
+        (
+            "openpbr:specular_weight=0,base_color=0.3/0.5/0.7,base_diffuse_roughness=0.6",
+            "eon:0.3/0.5/0.7,roughness=0.6",
+        ),
+        (
+            "openpbr:specular_weight=0,subsurface_weight=1,subsurface_color=0.4",
+            "lambertian:0.4",
+        ),
+        (
+            "openpbr:transmission_weight=1,specular_roughness=0.4",
+            "rough-dielectric:roughness=0.4",
+        ),
+        (
+            "openpbr:base_weight=0,specular_weight=0,fuzz_weight=1,fuzz_roughness=0.4,fuzz_color=0.8",
+            "sheen-ltc:0.8,roughness=0.4",
+        ),
+    ] {
+        let (f, g) = (value(text, wi, wo), value(slab, wi, wo));
+        for k in 0..3 {
+            // What passes a gloss of no contrast is 1 less the table's rounding.
+            assert!((f[k] - g[k]).abs() <= 2e-3 * g[k], "{text}: {f:?} {g:?}");
+        }
+        // A control: half of it is another value.
+        assert!((0.5 * f[0] - g[0]).abs() > 2e-3 * g[0], "{text}");
+    }
+}
