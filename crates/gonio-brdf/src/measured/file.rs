@@ -1,10 +1,10 @@
-//! Files of measured reflectance: opened, mapped into memory and written, with errors that name the place.
+//! Files of measured reflectance: opened and mapped into memory, with errors that name the place.
 
 use crate::BrdfError;
 use memmap2::Mmap;
 use std::fs::File;
-use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
+use std::io::Read;
+use std::path::Path;
 use std::sync::Arc;
 
 /// What is wrong where in a file, which itself is named later.
@@ -96,39 +96,4 @@ mod mapping {
         // the file in place, or cuts it off, is beyond what any reader can rule out; the documentation of the readers says so.
         unsafe { memmap2::Mmap::map(file) }
     }
-}
-
-/// Writes a whole file: to a temporary name in the same folder, then renamed. On failure the temporary file is removed, and what stood
-/// at `path` stays as it was.
-pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), BrdfError> {
-    let temporary = temporary_name(path);
-    let written = File::options()
-        .write(true)
-        .create_new(true)
-        .open(&temporary)
-        .and_then(|mut file| {
-            file.write_all(bytes)?;
-            file.sync_all()
-        })
-        .and_then(|()| std::fs::rename(&temporary, path));
-    written.map_err(|source| {
-        // What was written is of no use; that it can't be removed either adds nothing to the error.
-        let _ = std::fs::remove_file(&temporary);
-        BrdfError::Io {
-            path: path.into(),
-            source,
-        }
-    })
-}
-
-/// A name beside `path` that no other writer has, of this process or another.
-fn temporary_name(path: &Path) -> PathBuf {
-    use std::sync::atomic::{AtomicU64, Ordering};
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let name = path.file_name().map_or_else(String::new, |name| {
-        // Short, whatever the length of the name: a name may be as long as the file system allows.
-        name.to_string_lossy().chars().take(32).collect()
-    });
-    path.with_file_name(format!(".{name}.{}.{count}.partial", std::process::id()))
 }

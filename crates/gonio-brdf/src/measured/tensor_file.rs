@@ -13,7 +13,9 @@
 //! loader published with it.
 
 use super::file::{self, Fault};
+use super::output;
 use crate::BrdfError;
+use std::io::Write as _;
 use std::path::Path;
 
 /// What a file begins with.
@@ -420,7 +422,7 @@ impl TensorWriter {
     /// # Errors
     /// If it cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), BrdfError> {
-        file::write(path, &self.to_bytes())
+        output::write(path, |out| out.write_all(&self.to_bytes()))
     }
 }
 

@@ -141,6 +141,9 @@ impl From<BrdfError> for Failure {
             BrdfError::Io { path, source } => {
                 Self::input(message).with_help(help_on_file(&path, source.kind()))
             }
+            BrdfError::Format { path, .. } if path.is_dir() => {
+                Self::input(message).with_help("name one of the files in the folder")
+            }
             BrdfError::Format { .. } => Self::input(message).with_help(DAMAGED),
             BrdfError::Interrupted => {
                 Self::interrupted(message).with_help("nothing was written: run it again")
