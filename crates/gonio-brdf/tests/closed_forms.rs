@@ -3,7 +3,7 @@
 // Helpers of tests are tests, and colours are short arrays walked side by side.
 #![allow(clippy::unwrap_used, clippy::needless_range_loop)]
 
-use gonio_brdf::{Brdf, Model, ModelSpec};
+use gonio_brdf::{Brdf, Model, ModelSpec, ParameterSlot};
 use gonio_num::Vec3;
 use std::f64::consts::{FRAC_1_PI, PI};
 
@@ -268,6 +268,29 @@ fn disney_at_the_normal_by_hand() {
             coated,
             0.3 / (4.0 * PI * 0.0625) + 0.5 * 0.25 * 0.04 * peak / 4.0,
         );
+    }
+}
+
+/// A texture can't set what only the other year's model has.
+#[test]
+fn disney_leaves_the_other_years_parameters_alone() {
+    let (wi, wo) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.28, 0.96));
+    for (year, own, others) in [
+        ("2012", "subsurface", &["ior", "flatness", "spec_trans"][..]),
+        ("2015", "flatness", &["subsurface"]),
+    ] {
+        let spec = ModelSpec::parse(&format!("disney:version={year}")).unwrap();
+        let plain: Model<f32, 3> = spec.build().unwrap();
+        let (wi, wo) = (wi.to_f32(), wo.to_f32());
+        let with = |name: &str| {
+            let mut model = plain.clone();
+            model.set_parameter(ParameterSlot::find("disney", name).unwrap(), [0.9; 3]);
+            model.eval(wi, wo)
+        };
+        for name in others {
+            assert_eq!(with(name), plain.eval(wi, wo), "{year} {name}");
+        }
+        assert_ne!(with(own), plain.eval(wi, wo), "{year}");
     }
 }
 

@@ -253,7 +253,7 @@ impl<R: Real, const N: usize> Disney<R, N> {
                 self.surface.set(parameter, x);
             }
             "specular" => self.ior = ior_of_specular(x),
-            "ior" => self.ior = x,
+            "ior" if self.version == Version::Of2015 => self.ior = x,
             "specular_tint" => self.specular_tint = x,
             "sheen" => self.sheen = x,
             "sheen_tint" => self.sheen_tint = x,
@@ -266,7 +266,10 @@ impl<R: Real, const N: usize> Disney<R, N> {
                 self.spec_trans = x;
                 self.transmits = true;
             }
-            _ => self.flatness = x,
+            "flatness" if self.version == Version::Of2015 => self.flatness = x,
+            "subsurface" if self.version == Version::Of2012 => self.flatness = x,
+            // A parameter of the other year.
+            _ => {}
         }
         self.derive();
     }

@@ -3,13 +3,13 @@
 mod parameters;
 
 use super::{Composite, Model};
-use crate::part::colour::{each_component, grey, mean, scale};
+use crate::part::colour::{cast, each_component, grey, mean, only_where, scale};
 use crate::part::fresnel::{Fresnel, dielectric};
 use crate::part::geometry::flipped_where;
 use crate::part::gloss::Gloss;
 use crate::part::sheen_lobe;
 use crate::{Brdf, BrdfError, Declares, ModelInfo, ModelSpec, Number, Sample};
-use gonio_num::{Real, Vec3};
+use gonio_num::{Mask, Real, Vec3};
 use parameters::{Values, slab};
 
 /// What the registry knows.
@@ -131,7 +131,7 @@ impl<R: Real, const N: usize> Layers<R, N> {
             coat: self.coat.cast(f),
             inner_reflection: f(self.inner_reflection),
             base_roughness: f(self.base_roughness),
-            base_albedo: crate::part::colour::cast(self.base_albedo, f),
+            base_albedo: cast(self.base_albedo, f),
             metal: self.metal.cast(f),
             film: self.film.cast(f),
         }
@@ -505,8 +505,7 @@ impl<R: Real, const N: usize, P: Brdf<R, N>> OpenPbr<R, N, P> {
     /// Whether a sheet is seen from below.
     #[inline]
     fn seen_from_below(&self, wo: Vec3<R>) -> R::Mask {
-        let below = wo.z.lt(R::zero());
-        if self.thin { below } else { below & !below }
+        R::Mask::splat(self.thin) & wo.z.lt(R::zero())
     }
 }
 
@@ -551,7 +550,7 @@ impl<R: Real, const N: usize, P: Brdf<R, N>> Brdf<R, N> for OpenPbr<R, N, P> {
         let (f, density) = self.eval_cos_and_pdf(wi, wo);
         let drawn = valid.gt(R::zero());
         let density = only::<R>(drawn, density);
-        Sample::continuous(wi, crate::part::colour::only_where(drawn, f), density)
+        Sample::continuous(wi, only_where(drawn, f), density)
     }
 
     fn albedo_estimate(&self, wo: Vec3<R>) -> R {
