@@ -78,6 +78,9 @@ pub enum BrdfError {
         /// What was expected.
         expected: String,
     },
+    /// A check got no answer.
+    #[error("no verdict: {0}")]
+    NoAnswer(#[from] gonio_verify::SubjectFailed),
     /// The user stopped it.
     #[error("stopped")]
     Interrupted,

@@ -1,20 +1,24 @@
 //! The entry point: every property of one subject.
 
 use crate::property;
+use crate::reflection::{EvalFn, SubjectFailed};
 use crate::report::Report;
 use crate::settings::{Effort, Settings};
-use crate::subject::{EvalFn, Expectation, Subject};
+use crate::subject::{Expectation, Subject};
 
 /// Checks every property of `subject` against what it declares.
 ///
 /// The random numbers are derived from `seed_name` and the property alone: the same arguments give the same report.
 /// The bounds are those of double precision; [`Checker`] has the other choices.
+///
+/// # Errors
+/// If the subject fails to answer; closures never do.
 pub fn check(
     subject: &Subject,
     expect: &Expectation,
     effort: Effort,
     seed_name: impl AsRef<str>,
-) -> Report {
+) -> Result<Report, SubjectFailed> {
     Checker::new(subject, expect, effort).run(seed_name)
 }
 
@@ -29,8 +33,9 @@ pub fn check(
 /// let subject = Subject::new("lambertian", &lambertian);
 /// let report = Checker::new(&subject, &Expectation::PHYSICAL, Effort::Quick)
 ///     .settings(Settings::new(Effort::Quick).with_precision(Precision::Single))
-///     .run("documentation");
+///     .run("documentation")?;
 /// assert!(report.passed(), "{report}");
+/// # Ok::<(), gonio_verify::SubjectFailed>(())
 /// ```
 pub struct Checker<'a> {
     pub(crate) subject: &'a Subject<'a>,
@@ -73,13 +78,16 @@ impl<'a> Checker<'a> {
     }
 
     /// Runs every property with random numbers derived from `seed_name`.
-    pub fn run(mut self, seed_name: impl AsRef<str>) -> Report {
+    ///
+    /// # Errors
+    /// If the subject fails to answer; closures never do.
+    pub fn run(mut self, seed_name: impl AsRef<str>) -> Result<Report, SubjectFailed> {
         self.seed_name = seed_name.as_ref().to_owned();
-        Report {
+        Ok(Report {
             subject: self.subject.name.clone(),
             effort: self.effort,
             seed_name: self.seed_name.clone(),
-            verdicts: property::all(&self),
-        }
+            verdicts: property::all(&self)?,
+        })
     }
 }

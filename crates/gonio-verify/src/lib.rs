@@ -1,7 +1,7 @@
 //! Evidence about reflection functions: closures in, verdicts out.
 //!
-//! A [`Subject`] is anybody's reflection function as closures: `eval`, and if it has them `pdf` and `sample`. An
-//! [`Expectation`] is what it declares of itself. [`check`] returns a [`Report`] with one [`Verdict`] a [`Property`]:
+//! A [`Subject`] is anybody's reflection function: `eval`, and if it has them `pdf` and `sample`, as closures, or as a
+//! [`Reflection`] that answers in batches. An [`Expectation`] is what it declares of itself. [`check`] returns a [`Report`] with one [`Verdict`] a [`Property`]:
 //! the figure, the bound it is held to, how sure that is, and the worst place found.
 //!
 //! Two rules lead the design. A false alarm costs a verifier its readers, so a statistical verdict fails a right subject
@@ -16,6 +16,7 @@ mod cubature;
 mod directions;
 mod partition;
 mod property;
+mod reflection;
 mod report;
 mod search;
 mod settings;
@@ -24,9 +25,10 @@ mod subject;
 mod verdict;
 
 pub use check::{Checker, check};
+pub use reflection::{EvalFn, PdfFn, Reflection, SampleFn, SubjectFailed, SubjectSample};
 pub use report::Report;
 pub use settings::{Effort, Precision, Settings};
-pub use subject::{EvalFn, Expectation, PdfFn, SampleFn, Subject, SubjectSample};
+pub use subject::{Expectation, Subject};
 pub use verdict::{Direction, Interval, Outcome, Property, Value, Verdict, Witness};
 
 #[cfg(doctest)]

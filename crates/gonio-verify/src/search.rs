@@ -1,6 +1,8 @@
 //! The search for the worst pair of directions.
 
 use crate::directions::{Region, at_height, azimuth, mirror, moved, random_pair};
+use crate::reflection::SubjectFailed;
+use crate::subject::{BATCH, Pair};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::Rng;
 
@@ -23,25 +25,33 @@ pub(crate) struct Worst {
 /// A reflection function with edges (a table's cells, a cartoon's bands) differs from itself across an edge when an
 /// argument is rounded. Such a difference lives on a set of measure zero and vanishes beside it; a true violation
 /// doesn't.
-fn robust(
-    figure: &impl Fn(Vec3<f64>, Vec3<f64>) -> f64,
-    wi: Vec3<f64>,
-    wo: Vec3<f64>,
-    nudge: f64,
-) -> f64 {
-    let mut least = figure(wi, wo);
+fn robust(figure: &impl Figure, (wi, wo): Pair, nudge: f64) -> Result<f64, SubjectFailed> {
+    let mut places = vec![(wi, wo)];
     let here = (wi.z, wo.z);
     for k in 0..3 {
         let around = 0.5 + 2.1 * f64::from(k);
         let (a, b) = (moved(wi, nudge, around), moved(wo, nudge, around + 1.0));
         for (wi, wo) in [(a, wo), (a, b)] {
             if wi.z * here.0 > 0.0 && wo.z * here.1 > 0.0 {
-                // A figure that isn't a number is no evidence either: it is the business of another property.
-                least = least.min(figure(wi, wo));
+                places.push((wi, wo));
             }
         }
     }
-    if least.is_nan() { 0.0 } else { least }
+    let figures = figure.at(&places)?;
+    // A figure that isn't a number is no evidence either: it is the business of another property.
+    let least = figures[1..].iter().fold(figures[0], |a: f64, f| a.min(*f));
+    Ok(if least.is_nan() { 0.0 } else { least })
+}
+
+/// What is wrong at each of some pairs of directions (wi, wo).
+pub(crate) trait Figure {
+    fn at(&self, pairs: &[Pair]) -> Result<Vec<f64>, SubjectFailed>;
+}
+
+impl<F: Fn(&[Pair]) -> Result<Vec<f64>, SubjectFailed>> Figure for F {
+    fn at(&self, pairs: &[Pair]) -> Result<Vec<f64>, SubjectFailed> {
+        self(pairs)
+    }
 }
 
 /// The largest robust `figure` over random pairs of the region, refined by a pattern search in the four coordinates
@@ -51,50 +61,51 @@ pub(crate) fn worst_pair(
     region: Region,
     pairs: u64,
     nudge: f64,
-    figure: impl Fn(Vec3<f64>, Vec3<f64>) -> f64,
-) -> Worst {
+    figure: impl Figure,
+) -> Result<Worst, SubjectFailed> {
     let up = Vec3::new(0.0, 0.0, 1.0);
     let mut evaluations = 0;
-    let mut starts: Vec<(f64, Vec3<f64>, Vec3<f64>)> = vec![(0.0, up, up); STARTS];
-    for _ in 0..pairs {
-        let (wi, wo) = random_pair(rng, region);
-        evaluations += 1;
-        if figure(wi, wo) > starts[STARTS - 1].0 {
-            let f = robust(&figure, wi, wo, nudge);
-            evaluations += 7;
-            let place = starts.iter().position(|s| f > s.0);
-            if let Some(place) = place {
-                starts.insert(place, (f, wi, wo));
-                starts.truncate(STARTS);
+    let mut starts: Vec<Scored> = vec![(0.0, (up, up)); STARTS];
+    let mut left = pairs;
+    while left > 0 {
+        let now = left.min(BATCH as u64);
+        left -= now;
+        let batch: Vec<Pair> = (0..now).map(|_| random_pair(rng, region)).collect();
+        evaluations += now;
+        for (pair, first) in batch.iter().zip(figure.at(&batch)?) {
+            if first > starts[STARTS - 1].0 {
+                let f = robust(&figure, *pair, nudge)?;
+                evaluations += 7;
+                let place = starts.iter().position(|s| f > s.0);
+                if let Some(place) = place {
+                    starts.insert(place, (f, *pair));
+                    starts.truncate(STARTS);
+                }
             }
         }
     }
     let mut worst = starts[0];
     for start in starts.into_iter().filter(|s| s.0 > 0.0) {
-        let (refined, spent) = refine(&figure, start, nudge);
+        let (refined, spent) = refine(&figure, start, nudge)?;
         evaluations += spent;
         if refined.0 > worst.0 {
             worst = refined;
         }
     }
-    let (figure, wi, wo) = worst;
-    Worst {
+    let (figure, (wi, wo)) = worst;
+    Ok(Worst {
         figure,
         wi,
         wo,
         evaluations,
-    }
+    })
 }
 
-type Scored = (f64, Vec3<f64>, Vec3<f64>);
+type Scored = (f64, Pair);
 
 /// Hooke and Jeeves' exploratory moves: each coordinate one step up or down, keeping what is worse; else half the step.
-fn refine(
-    figure: &impl Fn(Vec3<f64>, Vec3<f64>) -> f64,
-    start: Scored,
-    nudge: f64,
-) -> (Scored, u64) {
-    let (mut best, wi, wo) = start;
+fn refine(figure: &impl Figure, start: Scored, nudge: f64) -> Result<(Scored, u64), SubjectFailed> {
+    let (mut best, (wi, wo)) = start;
     let mut x = [wi.z, azimuth(wi), wo.z, azimuth(wo)];
     let pair = |x: [f64; 4]| (at_height(x[0], x[1]), at_height(x[2], x[3]));
     // The starting point as the search's own coordinates round it.
@@ -110,11 +121,11 @@ fn refine(
                 if axis % 2 == 0 && !(trial[axis] * x[axis] > 0.0 && trial[axis].abs() <= 1.0) {
                     continue;
                 }
-                let (wi, wo) = pair(trial);
-                let f = robust(figure, wi, wo, nudge);
+                let place = pair(trial);
+                let f = robust(figure, place, nudge)?;
                 evaluations += 7;
                 if f > best {
-                    (best, x, kept, better) = (f, trial, (wi, wo), true);
+                    (best, x, kept, better) = (f, trial, place, true);
                 }
             }
         }
@@ -122,20 +133,25 @@ fn refine(
             step *= 0.5;
         }
     }
-    ((best, kept.0, kept.1), evaluations)
+    Ok(((best, kept), evaluations))
 }
 
-/// A typical size of f: its mean over random pairs of the region and mirror pairs, over the channels. Only finite values
-/// count.
-pub(crate) fn typical(eval: &crate::subject::EvalFn, region: Region, rng: &mut Rng) -> f64 {
+/// A typical size of the values `f` at random pairs of the region and mirror pairs: their mean over the channels. Only
+/// finite values count.
+pub(crate) fn typical(
+    eval: impl Fn(&[Pair]) -> Result<Vec<[f64; 3]>, SubjectFailed>,
+    region: Region,
+    rng: &mut Rng,
+) -> Result<f64, SubjectFailed> {
     const PAIRS: u32 = 512;
+    let pairs: Vec<Pair> = (0..PAIRS)
+        .map(|k| {
+            let (wi, wo) = random_pair(rng, region);
+            (if k % 16 == 0 { mirror(wo) } else { wi }, wo)
+        })
+        .collect();
     let (mut sum, mut n) = (0.0, 0u32);
-    for k in 0..PAIRS {
-        let (mut wi, wo) = random_pair(rng, region);
-        if k % 16 == 0 {
-            wi = mirror(wo);
-        }
-        let f = eval(wi, wo);
+    for f in eval(&pairs)? {
         let mean = (f[0].abs() + f[1].abs() + f[2].abs()) / 3.0;
         if mean.is_finite() {
             // A few directions in a sharp lobe must not set the scale of all others.
@@ -143,13 +159,19 @@ pub(crate) fn typical(eval: &crate::subject::EvalFn, region: Region, rng: &mut R
             n += 1;
         }
     }
-    sum / f64::from(n.max(1))
+    Ok(sum / f64::from(n.max(1)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use gonio_num::Real;
+
+    fn of_one(
+        figure: impl Fn(Vec3<f64>, Vec3<f64>) -> f64,
+    ) -> impl Fn(&[Pair]) -> Result<Vec<f64>, SubjectFailed> {
+        move |pairs| Ok(pairs.iter().map(|(wi, wo)| figure(*wi, *wo)).collect())
+    }
 
     #[test]
     fn the_refined_witness_is_the_summit() {
@@ -159,8 +181,9 @@ mod tests {
             let e: f64 = Real::exp(-(d.0 * d.0 + d.1 * d.1));
             e
         };
+        let bump = of_one(bump);
         let mut rng = Rng::from_name("the_refined_witness_is_the_summit");
-        let worst = worst_pair(&mut rng, Region::Above, 2000, 1e-7, bump);
+        let worst = worst_pair(&mut rng, Region::Above, 2000, 1e-7, bump).unwrap();
         assert!(worst.figure > 0.999, "{worst:?}");
         assert!((worst.wi.z - 0.3).abs() < 2e-3);
     }
@@ -171,9 +194,9 @@ mod tests {
         let edge = |wi: Vec3<f64>, _: Vec3<f64>| f64::from(azimuth(wi) < 1e-9);
         let w = Vec3::new(0.6, 0.0, 0.8);
         assert_eq!(edge(w, w), 1.0);
-        assert_eq!(robust(&edge, w, w, 1e-7), 0.0);
+        assert_eq!(robust(&of_one(edge), (w, w), 1e-7), Ok(0.0));
         // A half plane is one.
         let half = |wi: Vec3<f64>, _: Vec3<f64>| f64::from(wi.x > 0.0);
-        assert_eq!(robust(&half, w, w, 1e-7), 1.0);
+        assert_eq!(robust(&of_one(half), (w, w), 1e-7), Ok(1.0));
     }
 }

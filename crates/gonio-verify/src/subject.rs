@@ -1,70 +1,78 @@
-//! What is checked: a reflection function as closures, and what it declares of itself.
+//! What is checked: a reflection function, and what it declares of itself.
 
 use crate::directions::Region;
+use crate::reflection::{EvalFn, PdfFn, Reflection, SampleFn, SubjectFailed, SubjectSample};
 use gonio_num::Vec3;
 
-/// f(wi, wo) in sr⁻¹, without the cosine, in three channels.
-pub type EvalFn<'a> = dyn Fn(Vec3<f64>, Vec3<f64>) -> [f64; 3] + Sync + 'a;
-/// The density per solid angle of sampling wi given wo.
-pub type PdfFn<'a> = dyn Fn(Vec3<f64>, Vec3<f64>) -> f64 + Sync + 'a;
-/// Draws wi given wo and three numbers in [0, 1); `None` when nothing is reflected.
-pub type SampleFn<'a> = dyn Fn(Vec3<f64>, [f64; 3]) -> Option<SubjectSample> + Sync + 'a;
+/// The most queries that one call of a [`Reflection`] is given: some hundred kilobytes.
+pub(crate) const BATCH: usize = 4096;
 
-/// A direction that a reflection function drew.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SubjectSample {
-    /// Towards the light, unit, local frame.
-    pub wi: Vec3<f64>,
-    /// f·|cosθi| / pdf, or for a Dirac delta the reflected fraction over the probability of this direction.
-    pub weight: [f64; 3],
-    /// Density per solid angle; for a Dirac delta the probability of choosing this direction. A sample of density 0
-    /// counts as no sample.
-    pub pdf: f64,
-    /// Whether the direction belongs to a Dirac delta.
-    pub delta: bool,
-}
-
-/// A reflection function as closures in `f64`. Both directions leave the surface: `wi` to the light, `wo` to the viewer;
-/// unit length, local frame, normal +z.
+/// A reflection function under its name: closures for one pair of directions ([`Subject::new`]), or a [`Reflection`] that is
+/// asked in batches ([`Subject::batched`]).
 ///
-/// A closure over `f32` code rounds its arguments and widens its results; [`crate::Settings::precision`] then
-/// has to say so.
+/// Both directions leave the surface: `wi` to the light, `wo` to the viewer; unit length, local frame, normal +z. What
+/// computes in `f32` rounds its arguments and widens its results; [`crate::Settings::precision`] then has to say so.
 #[derive(Clone)]
 pub struct Subject<'a> {
     /// Name in the report.
     pub name: String,
-    /// f(wi, wo), see [`EvalFn`].
-    pub eval: &'a EvalFn<'a>,
-    /// Density of `sample`, see [`PdfFn`]. 0 for Dirac deltas.
-    pub pdf: Option<&'a PdfFn<'a>>,
-    /// Importance sampling, see [`SampleFn`].
-    pub sample: Option<&'a SampleFn<'a>>,
+    eval: Operation<'a, EvalFn<'a>>,
+    pdf: Option<Operation<'a, PdfFn<'a>>>,
+    sample: Option<Operation<'a, SampleFn<'a>>>,
     /// `None`: it only reflects, and everything below the horizon must be exactly 0. Otherwise light may pass to the other
     /// side, z < 0, from either side, and this is the index of refraction there over the one above, each channel.
     pub relative_ior: Option<[f64; 3]>,
 }
 
+/// Where the answers to one kind of question come from.
+enum Operation<'a, F: ?Sized> {
+    One(&'a F),
+    Batch(&'a dyn Reflection),
+}
+
+impl<F: ?Sized> Clone for Operation<'_, F> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<F: ?Sized> Copy for Operation<'_, F> {}
+
 impl<'a> Subject<'a> {
-    /// A reflection function that can only be evaluated.
+    /// A reflection function that can only be evaluated, see [`EvalFn`].
     pub fn new(name: impl Into<String>, eval: &'a EvalFn<'a>) -> Self {
         Self {
             name: name.into(),
-            eval,
+            eval: Operation::One(eval),
             pdf: None,
             sample: None,
             relative_ior: None,
         }
     }
 
-    /// Adds the density of sampling wi given wo.
+    /// A reflection function that answers many queries at once, with what it says that it has.
+    pub fn batched(name: impl Into<String>, reflection: &'a dyn Reflection) -> Self {
+        let batch = Operation::Batch(reflection);
+        Self {
+            name: name.into(),
+            eval: Operation::Batch(reflection),
+            pdf: reflection.has_pdf().then_some(batch),
+            sample: reflection
+                .has_sample()
+                .then_some(Operation::Batch(reflection)),
+            relative_ior: reflection.relative_ior(),
+        }
+    }
+
+    /// Adds the density of sampling wi given wo, 0 for Dirac deltas, or replaces it.
     pub fn with_pdf(mut self, pdf: &'a PdfFn<'a>) -> Self {
-        self.pdf = Some(pdf);
+        self.pdf = Some(Operation::One(pdf));
         self
     }
 
-    /// Adds importance sampling.
+    /// Adds importance sampling, or replaces it.
     pub fn with_sample(mut self, sample: &'a SampleFn<'a>) -> Self {
-        self.sample = Some(sample);
+        self.sample = Some(Operation::One(sample));
         self
     }
 
@@ -82,6 +90,14 @@ impl<'a> Subject<'a> {
     /// Whether nothing passes to the other side.
     pub(crate) fn only_reflects(&self) -> bool {
         self.relative_ior.is_none()
+    }
+
+    pub(crate) fn has_pdf(&self) -> bool {
+        self.pdf.is_some()
+    }
+
+    pub(crate) fn has_sample(&self) -> bool {
+        self.sample.is_some()
     }
 
     /// n² of the side that `w` is on, each channel.
@@ -108,11 +124,57 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// What `sample` gives at `u`, with samples of density 0 taken as nothing.
-    pub(crate) fn draw(&self, wo: Vec3<f64>, u: [f64; 3]) -> Option<SubjectSample> {
-        let sample = self.sample?;
-        sample(wo, u).filter(|s| s.pdf != 0.0)
+    /// f at each pair (wi, wo).
+    pub(crate) fn eval(&self, pairs: &[Pair]) -> Result<Vec<[f64; 3]>, SubjectFailed> {
+        match self.eval {
+            Operation::One(eval) => Ok(pairs.iter().map(|(wi, wo)| eval(*wi, *wo)).collect()),
+            Operation::Batch(r) => in_batches(pairs, [0.0; 3], |wi, wo, f| r.eval(wi, wo, f)),
+        }
     }
+
+    /// The density at each pair (wi, wo); 0 where there is none.
+    pub(crate) fn pdf(&self, pairs: &[Pair]) -> Result<Vec<f64>, SubjectFailed> {
+        match self.pdf {
+            None => Ok(vec![0.0; pairs.len()]),
+            Some(Operation::One(pdf)) => Ok(pairs.iter().map(|(wi, wo)| pdf(*wi, *wo)).collect()),
+            Some(Operation::Batch(r)) => in_batches(pairs, 0.0, |wi, wo, p| r.pdf(wi, wo, p)),
+        }
+    }
+
+    /// What `sample` gives for each (wo, u), with samples of density 0 taken as nothing.
+    pub(crate) fn draw(
+        &self,
+        queries: &[Draw],
+    ) -> Result<Vec<Option<SubjectSample>>, SubjectFailed> {
+        let mut all: Vec<Option<SubjectSample>> = match self.sample {
+            None => vec![None; queries.len()],
+            Some(Operation::One(sample)) => queries.iter().map(|(wo, u)| sample(*wo, *u)).collect(),
+            Some(Operation::Batch(r)) => in_batches(queries, None, |wo, u, s| r.sample(wo, u, s))?,
+        };
+        for s in &mut all {
+            *s = s.filter(|s| s.pdf != 0.0);
+        }
+        Ok(all)
+    }
+}
+
+/// Directions (wi, wo).
+pub(crate) type Pair = (Vec3<f64>, Vec3<f64>);
+/// A direction wo and the numbers given to `sample`.
+pub(crate) type Draw = (Vec3<f64>, [f64; 3]);
+
+/// Asks `ask` for each of `queries`, at most [`BATCH`] at once.
+fn in_batches<A: Copy, B: Copy, T: Copy>(
+    queries: &[(A, B)],
+    nothing: T,
+    mut ask: impl FnMut(&[A], &[B], &mut [T]) -> Result<(), SubjectFailed>,
+) -> Result<Vec<T>, SubjectFailed> {
+    let mut answers = vec![nothing; queries.len()];
+    for (queries, answers) in queries.chunks(BATCH).zip(answers.chunks_mut(BATCH)) {
+        let (a, b): (Vec<A>, Vec<B>) = queries.iter().copied().unzip();
+        ask(&a, &b, answers)?;
+    }
+    Ok(answers)
 }
 
 impl std::fmt::Debug for Subject<'_> {

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use support::*;
 
 fn report(name: &str, r: &dyn Reflection, expect: &Expectation) -> Report {
-    let report = with_subject(name, r, |s| check(s, expect, Effort::Quick, name));
+    let report = with_subject(name, r, |s| check(s, expect, Effort::Quick, name).unwrap());
     if std::env::var_os("GONIO_SHOW").is_some() {
         println!("{report}\n");
     }

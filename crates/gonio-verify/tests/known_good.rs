@@ -56,7 +56,7 @@ fn right_functions_pass_whole() {
     ];
     for (name, r, expect) in &subjects {
         let report = with_subject(name, r.as_ref(), |s| {
-            check(s, expect, Effort::Quick, "right functions")
+            check(s, expect, Effort::Quick, "right functions").unwrap()
         });
         if std::env::var_os("GONIO_SHOW").is_some() {
             println!("{report}\n");
@@ -72,7 +72,7 @@ fn right_functions_pass_whole() {
 #[test]
 fn a_mirror_has_no_density_to_check() {
     let report = with_subject("mirror", &Mirror(1.0), |s| {
-        check(s, &Expectation::PHYSICAL, Effort::Quick, "mirror")
+        check(s, &Expectation::PHYSICAL, Effort::Quick, "mirror").unwrap()
     });
     assert!(report.passed(), "{report}");
     for p in [Property::PdfIntegral, Property::SampleDensity] {
@@ -82,7 +82,7 @@ fn a_mirror_has_no_density_to_check() {
     assert_eq!(energy.figure, 1.0);
     // The control: a mirror that makes energy.
     let report = with_subject("bright mirror", &Mirror(1.01), |s| {
-        check(s, &Expectation::PHYSICAL, Effort::Quick, "mirror")
+        check(s, &Expectation::PHYSICAL, Effort::Quick, "mirror").unwrap()
     });
     assert_eq!(
         outcome(&report, Property::EnergyConservation),
@@ -95,7 +95,7 @@ fn without_pdf_and_sample_the_rest_is_still_checked() {
     let ggx = Ggx { alpha: [0.05; 2] };
     let eval = |wi: V, wo: V| ggx.eval(wi, wo);
     let subject = gonio_verify::Subject::new("eval only", &eval);
-    let report = check(&subject, &Expectation::PHYSICAL, Effort::Quick, "eval only");
+    let report = check(&subject, &Expectation::PHYSICAL, Effort::Quick, "eval only").unwrap();
     assert!(report.passed(), "{report}");
     // The quadrature finds the lobe without a sampler: the albedo at normal incidence of α = 0.05 is above 0.99.
     let energy = report.verdict(Property::EnergyConservation).unwrap();
@@ -133,7 +133,8 @@ fn single_precision_inside_passes_with_its_bounds() {
     let settings = Settings::new(Effort::Quick).with_precision(Precision::Single);
     let report = Checker::new(&subject, &Expectation::PHYSICAL, Effort::Quick)
         .settings(settings)
-        .run("single precision");
+        .run("single precision")
+        .unwrap();
     assert!(report.passed(), "{report}");
     // The control: the bounds of double precision see the rounding.
     let report = check(
@@ -141,7 +142,8 @@ fn single_precision_inside_passes_with_its_bounds() {
         &Expectation::PHYSICAL,
         Effort::Quick,
         "single precision",
-    );
+    )
+    .unwrap();
     assert!(!report.passed(), "{report}");
 }
 
@@ -149,7 +151,7 @@ fn single_precision_inside_passes_with_its_bounds() {
 fn the_same_seed_gives_the_same_report() {
     let run = |seed: &str| {
         with_subject("ggx", &Ggx { alpha: [0.3; 2] }, |s| {
-            check(s, &Expectation::PHYSICAL, Effort::Quick, seed)
+            check(s, &Expectation::PHYSICAL, Effort::Quick, seed).unwrap()
         })
     };
     let a = run("a");
@@ -174,7 +176,9 @@ fn a_leaf_may_transmit() {
     let subject = gonio_verify::Subject::new("leaf", &eval)
         .with_pdf(&pdf)
         .with_sample(&sample);
-    let run = |s: &gonio_verify::Subject| check(s, &Expectation::PHYSICAL, Effort::Quick, "leaf");
+    let run = |s: &gonio_verify::Subject| {
+        check(s, &Expectation::PHYSICAL, Effort::Quick, "leaf").unwrap()
+    };
     let report = run(&subject.clone().transmitting([1.0; 3]));
     assert!(report.passed(), "{report}");
     assert_eq!(outcome(&report, Property::Horizon), Outcome::NotApplicable);
@@ -190,7 +194,7 @@ fn a_boundary_scales_radiance() {
         let boundary = Frosted { ior, scaled: true };
         let report = with_subject("frosted", &boundary, |s| {
             let s = s.clone().transmitting(ior);
-            check(&s, &Expectation::PHYSICAL, Effort::Quick, "frosted")
+            check(&s, &Expectation::PHYSICAL, Effort::Quick, "frosted").unwrap()
         });
         assert!(report.passed(), "{report}");
         let energy = report.verdict(Property::EnergyConservation).unwrap();
@@ -203,7 +207,7 @@ fn a_boundary_scales_radiance() {
     };
     let report = with_subject("unscaled", &forgetful, |s| {
         let s = s.clone().transmitting([0.7; 3]);
-        check(&s, &Expectation::PHYSICAL, Effort::Quick, "frosted")
+        check(&s, &Expectation::PHYSICAL, Effort::Quick, "frosted").unwrap()
     });
     for p in [Property::Reciprocity, Property::EnergyConservation] {
         assert_eq!(outcome(&report, p), Outcome::Fail, "{report}");
@@ -225,6 +229,7 @@ fn components_add_up() {
         Checker::new(&subject, &Expectation::PHYSICAL, Effort::Quick)
             .components(components)
             .run("components")
+            .unwrap()
     };
     assert_eq!(outcome(&run(&both), Property::Linearity), Outcome::Pass);
     assert_eq!(
@@ -291,6 +296,7 @@ fn calibration_no_false_alarms() {
                 Checker::new(s, expect, Effort::Quick)
                     .settings(settings)
                     .run(format!("calibration {run}"))
+                    .unwrap()
             });
             assert!(report.passed(), "run {run}: {report}");
             let density = report.verdict(Property::SampleDensity).unwrap();

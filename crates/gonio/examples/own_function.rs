@@ -7,13 +7,14 @@
 
 use gonio::num::Vec3;
 use gonio::radiometry::warp;
-use gonio::verify::{Effort, Expectation, Report, Subject, SubjectSample, check};
+use gonio::verify::{Effort, Expectation, Report, Subject, SubjectFailed, SubjectSample, check};
 use std::f64::consts::PI;
 
-fn main() {
-    for report in [hasty(), careful()] {
+fn main() -> Result<(), SubjectFailed> {
+    for report in [hasty()?, careful()?] {
         println!("{report}\n");
     }
+    Ok(())
 }
 
 /// Schlick's share of light that is not reflected by the coat (17), F0 = 0.04.
@@ -22,17 +23,20 @@ fn passes(cos_theta: f64) -> f64 {
 }
 
 /// Light passes the coat on its way in, and is forgotten on its way out: not reciprocal.
-pub fn hasty() -> Report {
+pub fn hasty() -> Result<Report, SubjectFailed> {
     judge("hasty", |wi, _| 0.8 / PI * passes(wi.z))
 }
 
 /// Light passes the coat on both ways.
-pub fn careful() -> Report {
+pub fn careful() -> Result<Report, SubjectFailed> {
     judge("careful", |wi, wo| 0.8 / PI * passes(wi.z) * passes(wo.z))
 }
 
 /// Checks a function of the directions above the horizon that is sampled in proportion to the cosine.
-fn judge(name: &str, f: impl Fn(Vec3<f64>, Vec3<f64>) -> f64 + Sync) -> Report {
+fn judge(
+    name: &str,
+    f: impl Fn(Vec3<f64>, Vec3<f64>) -> f64 + Sync,
+) -> Result<Report, SubjectFailed> {
     let above = |wi: Vec3<f64>, wo: Vec3<f64>| wi.z > 0.0 && wo.z > 0.0;
     let eval = |wi: Vec3<f64>, wo: Vec3<f64>| match above(wi, wo) {
         true => [f(wi, wo); 3],

@@ -46,9 +46,10 @@
 //!     false => [0.0; 3],
 //! };
 //! let subject = Subject::new("lopsided", &lopsided);
-//! let report = check(&subject, &Expectation::PHYSICAL, Effort::Quick, "rustdoc");
+//! let report = check(&subject, &Expectation::PHYSICAL, Effort::Quick, "rustdoc")?;
 //! let failed: Vec<String> = report.failures().map(|v| v.property.to_string()).collect();
 //! assert_eq!(failed, ["reciprocity"]);
+//! # Ok::<(), gonio::verify::SubjectFailed>(())
 //! ```
 //!
 //! # env

@@ -21,11 +21,12 @@ fn the_sphere_is_golden() {
 #[test]
 fn the_hasty_function_is_found_out() {
     let failed: Vec<String> = own_function::hasty()
+        .unwrap()
         .failures()
         .map(|v| v.property.to_string())
         .collect();
     assert_eq!(failed, ["reciprocity"]);
-    let report = own_function::careful();
+    let report = own_function::careful().unwrap();
     assert!(report.passed(), "{report}");
 }
 

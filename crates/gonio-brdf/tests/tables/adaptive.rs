@@ -265,7 +265,11 @@ fn a_wrong_density_is_noticed() {
         isotropic: true,
         ..Default::default()
     };
-    assert!(!gonio_verify::check(&subject, &expectation, Effort::Quick, "wrong").passed());
+    assert!(
+        !gonio_verify::check(&subject, &expectation, Effort::Quick, "wrong")
+            .unwrap()
+            .passed()
+    );
 }
 
 /// The integral of the density, and the share of draws that are below the horizon.

@@ -145,7 +145,7 @@ pub fn verified(name: &str, data: Measured, effort: Effort) -> Report {
     if !reflects_only {
         subject = subject.transmitting([1.0; 3]);
     }
-    gonio_verify::check(&subject, &expectation, effort, name)
+    gonio_verify::check(&subject, &expectation, effort, name).unwrap()
 }
 
 /// Mean and relative standard deviation of the luminous weights of samples for `wo`, lost ones counted as 0.

@@ -1,14 +1,16 @@
 //! `sample` against `pdf`: the integral of the density, and the χ² test of the drawn directions.
 
 use super::furnace::{SECOND_LOOK, lobes, viewers};
-use super::rng;
+use super::{draws as draws_of, rng};
 use crate::check::Checker;
 use crate::cubature::integrate;
 use crate::directions::at_height;
 use crate::partition::{Partition, Pilot, Rules, coordinates};
+use crate::reflection::SubjectFailed;
 use crate::statistics::{
     TestResult, chi_square_test_with_slack, sidak, sidak_p_value, wilson_interval,
 };
+use crate::subject::Pair;
 use crate::verdict::{Interval, Property, Verdict, Witness};
 use gonio_num::Vec3;
 
@@ -45,23 +47,30 @@ impl Look {
 }
 
 /// The tests of one direction: `harder` multiplies pilot samples, cells and quadrature; the tested samples stay the same.
-fn look(c: &Checker, wo: Vec3<f64>, index: usize, tail: f64, harder: u64) -> Option<Look> {
-    let pdf = c.subject.pdf?;
+fn look(
+    c: &Checker,
+    wo: Vec3<f64>,
+    index: usize,
+    tail: f64,
+    harder: u64,
+) -> Result<Look, SubjectFailed> {
     let settings = &c.settings;
     let property = Property::SampleDensity;
     let mut random = rng(c, property, &format!("pilot {index}"));
-    let three =
-        |r: &mut gonio_radiometry::sequence::Rng| [r.next_f64(), r.next_f64(), r.next_f64()];
     let cells = u64::from(settings.cells);
     let pilot = cells * 16 * harder;
-    let points: Vec<Pilot> = (0..pilot)
-        .filter_map(|_| c.subject.draw(wo, three(&mut random)))
-        .filter(|s| !s.delta && s.wi.is_finite())
-        .map(|s| Pilot {
-            at: coordinates(s.wi),
-            density: s.pdf,
-        })
-        .collect();
+    let mut points: Vec<Pilot> = Vec::new();
+    for batch in draws_of(&mut random, wo, pilot) {
+        let drawn = c.subject.draw(&batch)?.into_iter().flatten();
+        points.extend(
+            drawn
+                .filter(|s| !s.delta && s.wi.is_finite())
+                .map(|s| Pilot {
+                    at: coordinates(s.wi),
+                    density: s.pdf,
+                }),
+        );
+    }
     let rules = Rules {
         max_points: (points.len() / (cells * harder.min(4)) as usize).max(8),
         max_mass: 4.0 / (cells * harder) as f64,
@@ -70,28 +79,33 @@ fn look(c: &Checker, wo: Vec3<f64>, index: usize, tail: f64, harder: u64) -> Opt
     };
     let partition = Partition::new(points, &lobes(c, wo), &rules, true);
     let integral = integrate(
-        |[z, phi]| [pdf(at_height(z, phi), wo)],
+        |at: &[[f64; 2]]| {
+            let pairs: Vec<Pair> = at
+                .iter()
+                .map(|[z, phi]| (at_height(*z, *phi), wo))
+                .collect();
+            Ok(c.subject.pdf(&pairs)?.into_iter().map(|p| [p]).collect())
+        },
         &partition.cells,
         // A fiftieth of the standard error of a fraction 1/2 of the draws: small beside chance, over all cells together.
         0.01 / (settings.density_samples.max(1) as f64).sqrt(),
         settings.quadrature_evaluations * harder,
-    );
+    )?;
 
     let draws = settings.density_samples;
     let mut random = rng(c, property, &format!("samples {index}"));
     let mut observed = vec![0u64; partition.cells.len()];
     let (mut hits, mut deltas) = (0, 0);
-    for _ in 0..draws {
-        let Some(s) = c.subject.draw(wo, three(&mut random)) else {
-            continue;
-        };
-        if s.delta {
-            deltas += 1;
-        } else if s.wi.is_finite()
-            && let Some(cell) = partition.find(s.wi)
-        {
-            observed[cell] += 1;
-            hits += 1;
+    for batch in draws_of(&mut random, wo, draws) {
+        for s in c.subject.draw(&batch)?.into_iter().flatten() {
+            if s.delta {
+                deltas += 1;
+            } else if s.wi.is_finite()
+                && let Some(cell) = partition.find(s.wi)
+            {
+                observed[cell] += 1;
+                hits += 1;
+            }
         }
     }
 
@@ -129,7 +143,7 @@ fn look(c: &Checker, wo: Vec3<f64>, index: usize, tail: f64, harder: u64) -> Opt
     expected.push(n * (1.0 - value).max(0.0));
     slack.push(n * error);
     counts.push(draws - hits);
-    Some(Look {
+    Ok(Look {
         wo,
         integral: value,
         integral_error: error,
@@ -149,13 +163,13 @@ fn look(c: &Checker, wo: Vec3<f64>, index: usize, tail: f64, harder: u64) -> Opt
 /// The cells follow pilot samples drawn apart from the tested ones, so each holds about the same probability however sharp
 /// the lobe is. Differences are shortened by the quadrature's error. A suspicion is looked at again with eight times the
 /// pilot samples and quadrature, so that a feature the first partition overlooked isn't blamed on the subject.
-pub(super) fn check(c: &Checker) -> [Verdict; 2] {
+pub(super) fn check(c: &Checker) -> Result<[Verdict; 2], SubjectFailed> {
     let properties = [Property::PdfIntegral, Property::SampleDensity];
-    let not_applicable = |why: &str| properties.map(|p| Verdict::not_applicable(p, why));
-    if c.subject.pdf.is_none() {
+    let not_applicable = |why: &str| Ok(properties.map(|p| Verdict::not_applicable(p, why)));
+    if !c.subject.has_pdf() {
         return not_applicable("the subject gives no pdf");
     }
-    if c.subject.sample.is_none() {
+    if !c.subject.has_sample() {
         return not_applicable("the subject can't be sampled");
     }
     let rate = c.settings.false_positive_rate;
@@ -163,18 +177,14 @@ pub(super) fn check(c: &Checker) -> [Verdict; 2] {
     let each = sidak(rate, directions.len() as u64);
     let mut looks: Vec<Look> = Vec::new();
     for (index, wo) in directions.into_iter().enumerate() {
-        let Some(mut l) = look(c, wo, index, each, 1) else {
-            continue;
-        };
+        let mut l = look(c, wo, index, each, 1)?;
         let suspicious = l.excess() > c.settings.integral_bound
             || l.chi_square.p_value < each.max(1e-3)
             || l.integral_error > 0.25 * BLIND;
         if suspicious {
             let before = l.samples;
-            if let Some(again) = look(c, wo, index, each, SECOND_LOOK) {
-                l = again;
-                l.samples += before;
-            }
+            l = look(c, wo, index, each, SECOND_LOOK)?;
+            l.samples += before;
         }
         looks.push(l);
     }
@@ -204,7 +214,7 @@ pub(super) fn check(c: &Checker) -> [Verdict; 2] {
     for v in &mut verdicts {
         v.note = note.clone();
     }
-    verdicts
+    Ok(verdicts)
 }
 
 fn integral_verdict(c: &Checker, looks: &[&Look], samples: u64) -> Verdict {

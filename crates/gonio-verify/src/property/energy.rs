@@ -63,7 +63,7 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
         worst.value
     };
     let mut v = Verdict::passing(property, figure, bound, samples);
-    let by_chance = c.subject.sample.is_some();
+    let by_chance = c.subject.has_sample();
     v.confidence = Some(Interval {
         low,
         high: worst.high.max(low),

@@ -1,11 +1,13 @@
 //! The white furnace: how much of uniform light a surface sends to a viewer, by quadrature and by its own sampling.
 
-use super::rng;
+use super::{draws as draws_of, rng};
 use crate::check::Checker;
 use crate::cubature::integrate;
 use crate::directions::{Region, at_height, flipped, mirror, refracted, spherical};
 use crate::partition::{Partition, Pilot, Rules, coordinates};
+use crate::reflection::SubjectFailed;
 use crate::statistics::{Moments, bernstein_deviation};
+use crate::subject::Pair;
 use crate::verdict::Property;
 use gonio_num::Vec3;
 
@@ -71,18 +73,18 @@ pub(super) fn lobes(c: &Checker, wo: Vec3<f64>) -> Vec<Vec3<f64>> {
 }
 
 /// A furnace for each of twice the usual number of directions, up to 89.5°.
-pub(super) fn measure(c: &Checker) -> Vec<Furnace> {
+pub(super) fn measure(c: &Checker) -> Result<Vec<Furnace>, SubjectFailed> {
     viewers(c, 2 * c.settings.directions, 89.5)
         .into_iter()
         .enumerate()
         .map(|(k, wo)| {
-            let first = at(c, wo, k, 1);
+            let first = at(c, wo, k, 1)?;
             if !suspicious(c, &first) {
-                return first;
+                return Ok(first);
             }
-            let mut again = at(c, wo, k, SECOND_LOOK);
+            let mut again = at(c, wo, k, SECOND_LOOK)?;
             again.evaluations += first.evaluations;
-            again
+            Ok(again)
         })
         .collect()
 }
@@ -95,7 +97,7 @@ fn suspicious(c: &Checker, f: &Furnace) -> bool {
         let total = f.quadrature[k] + f.delta[k].mean();
         total > 1.0 + 0.5 * settings.energy_bound
             || f.error[k] > 0.005
-            || (c.subject.pdf.is_some()
+            || (c.subject.has_pdf()
                 && f.draws > 0
                 && f.bias(k, tail).excess > 0.25 * settings.integral_bound)
     }) || f.unreachable > 0.5 * settings.integral_bound
@@ -135,9 +137,9 @@ impl Furnace {
 }
 
 /// Draws, and the quadrature over cells that follow them; `harder` multiplies cells and quadrature.
-fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
+fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Result<Furnace, SubjectFailed> {
     let mut random = rng(c, Property::EnergyConservation, &index.to_string());
-    let draws = if c.subject.sample.is_some() {
+    let draws = if c.subject.has_sample() {
         c.settings.density_samples / 4
     } else {
         0
@@ -147,33 +149,33 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
     let pilot = c.settings.cells as usize * 16 * harder as usize;
     let mut points = Vec::with_capacity(pilot.min(draws as usize));
     let mut largest_weight: f64 = 0.0;
-    for _ in 0..draws {
-        let u = [random.next_f64(), random.next_f64(), random.next_f64()];
-        let s = c.subject.draw(wo, u);
-        let is_delta = s.is_some_and(|s| s.delta);
-        delta_draws += u64::from(is_delta);
-        let weight = s.map_or([0.0; 3], |s| c.subject.basic(s.weight, s.wi, wo));
-        for k in 0..3 {
-            // What isn't finite is another property's business and must not blind this one.
-            let w = if weight[k].is_finite() {
-                weight[k]
-            } else {
-                0.0
-            };
-            continuous[k].push(if is_delta { 0.0 } else { w });
-            delta[k].push(if is_delta { w } else { 0.0 });
-            if !is_delta {
-                largest_weight = largest_weight.max(w);
+    for batch in draws_of(&mut random, wo, draws) {
+        for s in c.subject.draw(&batch)? {
+            let is_delta = s.is_some_and(|s| s.delta);
+            delta_draws += u64::from(is_delta);
+            let weight = s.map_or([0.0; 3], |s| c.subject.basic(s.weight, s.wi, wo));
+            for k in 0..3 {
+                // What isn't finite is another property's business and must not blind this one.
+                let w = if weight[k].is_finite() {
+                    weight[k]
+                } else {
+                    0.0
+                };
+                continuous[k].push(if is_delta { 0.0 } else { w });
+                delta[k].push(if is_delta { w } else { 0.0 });
+                if !is_delta {
+                    largest_weight = largest_weight.max(w);
+                }
             }
-        }
-        if let Some(s) = s.filter(|s| !s.delta && s.wi.is_finite())
-            && points.len() < pilot
-        {
-            let brightest = weight.iter().fold(1.0, |a: f64, w| a.max(*w));
-            points.push(Pilot {
-                at: coordinates(s.wi),
-                density: s.pdf * brightest,
-            });
+            if let Some(s) = s.filter(|s| !s.delta && s.wi.is_finite())
+                && points.len() < pilot
+            {
+                let brightest = weight.iter().fold(1.0, |a: f64, w| a.max(*w));
+                points.push(Pilot {
+                    at: coordinates(s.wi),
+                    density: s.pdf * brightest,
+                });
+            }
         }
     }
 
@@ -191,30 +193,39 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
     let mut unreachable_at = None;
     let mut most = 0.0;
     let integral = integrate(
-        |[z, phi]| {
-            let wi = at_height(z, phi);
-            let f = c.subject.basic((c.subject.eval)(wi, wo), wi, wo);
-            let [r, g, b] = f.map(|f| f * z.abs());
-            let brightest = r.max(g).max(b);
-            let Some(pdf) = c.subject.pdf else {
-                return [r, g, b, 0.0, 0.0, 0.0, 0.0];
-            };
-            let p = pdf(wi, wo);
-            if p > 0.0 {
-                largest_weight = largest_weight.max(brightest / p);
-                return [r, g, b, 0.0, r * r / p, g * g / p, b * b / p];
-            }
-            if brightest > most {
-                (most, unreachable_at) = (brightest, Some(wi));
-            }
-            [r, g, b, brightest, 0.0, 0.0, 0.0]
+        |at: &[[f64; 2]]| {
+            let pairs: Vec<Pair> = at
+                .iter()
+                .map(|[z, phi]| (at_height(*z, *phi), wo))
+                .collect();
+            let f = c.subject.eval(&pairs)?;
+            let densities = c.subject.pdf(&pairs)?;
+            let values = (0..pairs.len()).map(|i| {
+                let wi = pairs[i].0;
+                let f = c.subject.basic(f[i], wi, wo);
+                let [r, g, b] = f.map(|f| f * at[i][0].abs());
+                let brightest = r.max(g).max(b);
+                if !c.subject.has_pdf() {
+                    return [r, g, b, 0.0, 0.0, 0.0, 0.0];
+                }
+                let p = densities[i];
+                if p > 0.0 {
+                    largest_weight = largest_weight.max(brightest / p);
+                    return [r, g, b, 0.0, r * r / p, g * g / p, b * b / p];
+                }
+                if brightest > most {
+                    (most, unreachable_at) = (brightest, Some(wi));
+                }
+                [r, g, b, brightest, 0.0, 0.0, 0.0]
+            });
+            Ok(values.collect())
         },
         &partition.cells,
         0.2 * c.settings.energy_bound,
         c.settings.quadrature_evaluations * harder,
-    );
+    )?;
     let (v, e) = (integral.total.value, integral.total.error);
-    Furnace {
+    Ok(Furnace {
         wo,
         quadrature: [v[0], v[1], v[2]],
         error: [e[0], e[1], e[2]],
@@ -228,5 +239,5 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Furnace {
         draws,
         delta_draws,
         evaluations: integral.evaluations + draws,
-    }
+    })
 }

@@ -1,9 +1,11 @@
 //! f depends on φi − φr only.
 
-use super::{relative_difference, rng, with_colour};
+use super::{differences, rng, with_colour};
 use crate::check::Checker;
 use crate::directions::turned;
+use crate::reflection::SubjectFailed;
 use crate::search::{typical, worst_pair};
+use crate::subject::Pair;
 use crate::verdict::{Property, Verdict, Witness};
 use gonio_num::Vec3;
 use std::f64::consts::TAU;
@@ -12,30 +14,37 @@ use std::f64::consts::TAU;
 /// function with a rotational symmetry of its own (a weave, period 90°) would hide from round ones.
 ///
 /// A failure involves no chance, as for reciprocity. As information, the symmetry in |φi − φr| is tried too.
-pub(super) fn check(c: &Checker) -> Verdict {
-    let eval = c.subject.eval;
+pub(super) fn check(c: &Checker) -> Result<Verdict, SubjectFailed> {
+    let eval = |pairs: &[Pair]| c.subject.eval(pairs);
     let mut random = rng(c, Property::Isotropy, "angles");
     let angles: [f64; 4] = std::array::from_fn(|_| TAU * random.next_f64());
     let region = c.subject.region();
-    let scale = typical(eval, region, &mut random);
-    let at = |wi: Vec3<f64>, wo: Vec3<f64>| {
-        let f = eval(wi, wo);
-        let mut worst = (0.0, angles[0]);
+    let scale = typical(eval, region, &mut random)?;
+    let turn = |pairs: &[Pair], angle: f64| -> Vec<Pair> {
+        let both = |(wi, wo): &Pair| (turned(*wi, angle), turned(*wo, angle));
+        pairs.iter().map(both).collect()
+    };
+    // The worst over the angles, with the angle, for each pair.
+    let at = |pairs: &[Pair]| -> Result<Vec<(f64, f64)>, SubjectFailed> {
+        let f = eval(pairs)?;
+        let mut worst = vec![(0.0, angles[0]); pairs.len()];
         for angle in angles {
-            let d = relative_difference(f, eval(turned(wi, angle), turned(wo, angle)), scale);
-            if d > worst.0 {
-                worst = (d, angle);
+            let changes = differences(&f, &eval(&turn(pairs, angle))?, scale)?;
+            for (worst, d) in worst.iter_mut().zip(changes) {
+                if d > worst.0 {
+                    *worst = (d, angle);
+                }
             }
         }
-        worst
+        Ok(worst)
     };
     let worst = worst_pair(
         &mut rng(c, Property::Isotropy, "pairs"),
         region,
         c.settings.pairs / 2,
         c.settings.nudge(),
-        |wi, wo| at(wi, wo).0,
-    );
+        |pairs: &[Pair]| Ok(at(pairs)?.into_iter().map(|(d, _)| d).collect()),
+    )?;
     let bound = c.settings.relative_bound;
     let mut v = Verdict::passing(
         Property::Isotropy,
@@ -43,12 +52,13 @@ pub(super) fn check(c: &Checker) -> Verdict {
         bound,
         5 * worst.evaluations,
     );
-    let angle = at(worst.wi, worst.wo).1;
-    let turned_f = eval(turned(worst.wi, angle), turned(worst.wo, angle));
+    let pair = [(worst.wi, worst.wo)];
+    let angle = at(&pair)?[0].1;
+    let (here, there) = (eval(&pair)?[0], eval(&turn(&pair, angle))?[0]);
     let witness =
         Witness::pair(worst.wi, worst.wo).value("turned by (degrees)", angle.to_degrees());
-    let witness = with_colour(witness, "f", eval(worst.wi, worst.wo));
-    v.witness = Some(with_colour(witness, "f turned", turned_f));
+    let witness = with_colour(witness, "f", here);
+    v.witness = Some(with_colour(witness, "f turned", there));
     v.detail = format!(
         "worst relative change when both directions turn about the normal: {:.3e}",
         worst.figure
@@ -61,8 +71,14 @@ pub(super) fn check(c: &Checker) -> Verdict {
         region,
         c.settings.pairs / 4,
         c.settings.nudge(),
-        |wi, wo| relative_difference(eval(wi, wo), eval(flipped(wi), flipped(wo)), scale),
-    );
+        |pairs: &[Pair]| {
+            let other: Vec<Pair> = pairs
+                .iter()
+                .map(|(wi, wo)| (flipped(*wi), flipped(*wo)))
+                .collect();
+            differences(&eval(pairs)?, &eval(&other)?, scale)
+        },
+    )?;
     v.samples += 2 * handed.evaluations;
     if handed.figure > bound && v.note.is_none() {
         v.note = Some(format!(
@@ -70,5 +86,5 @@ pub(super) fn check(c: &Checker) -> Verdict {
             handed.figure
         ));
     }
-    v
+    Ok(v)
 }

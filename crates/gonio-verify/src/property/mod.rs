@@ -10,31 +10,47 @@ mod signs;
 mod weight;
 
 use crate::check::Checker;
+use crate::reflection::SubjectFailed;
+use crate::subject::{BATCH, Draw};
 use crate::verdict::{Property, Verdict};
+use gonio_num::Vec3;
 use gonio_radiometry::sequence::Rng;
 
 /// Every property, in the order of [`Property::ALL`].
-pub(crate) fn all(c: &Checker) -> Vec<Verdict> {
-    let [finite, non_negative, horizon] = signs::check(c);
-    let [integral, density] = density::check(c);
-    let furnaces = furnace::measure(c);
-    vec![
+///
+/// # Errors
+/// If the subject fails to answer.
+pub(crate) fn all(c: &Checker) -> Result<Vec<Verdict>, SubjectFailed> {
+    let [finite, non_negative, horizon] = signs::check(c)?;
+    let [integral, density] = density::check(c)?;
+    let furnaces = furnace::measure(c)?;
+    Ok(vec![
         finite,
         non_negative,
         horizon,
-        reciprocity::check(c),
+        reciprocity::check(c)?,
         energy::check(c, &furnaces),
-        isotropy::check(c),
-        linearity::check(c),
+        isotropy::check(c)?,
+        linearity::check(c)?,
         integral,
         density,
-        weight::check(c, &furnaces),
-    ]
+        weight::check(c, &furnaces)?,
+    ])
 }
 
 /// The random numbers of a property: a function of the seed's name, the property and `part` alone.
 fn rng(c: &Checker, property: Property, part: &str) -> Rng {
     Rng::from_name(&format!("{}/{}/{part}", c.seed_name, property.name()))
+}
+
+/// `count` times wo with three random numbers, in batches.
+fn draws<'r>(rng: &'r mut Rng, wo: Vec3<f64>, count: u64) -> impl Iterator<Item = Vec<Draw>> + 'r {
+    let batch = BATCH as u64;
+    (0..count.div_ceil(batch)).map(move |k| {
+        (0..batch.min(count - k * batch))
+            .map(|_| (wo, [rng.next_f64(), rng.next_f64(), rng.next_f64()]))
+            .collect()
+    })
 }
 
 /// The largest difference of a and b over the channels, relative to the larger of both plus a thousandth of the
@@ -54,6 +70,14 @@ fn relative_difference(a: [f64; 3], b: [f64; 3], typical: f64) -> f64 {
         worst = d.max(worst);
     }
     worst
+}
+
+/// [`relative_difference`] of each of `a` with its like in `b`.
+fn differences(a: &[[f64; 3]], b: &[[f64; 3]], typical: f64) -> Result<Vec<f64>, SubjectFailed> {
+    let both = a.iter().zip(b);
+    Ok(both
+        .map(|(a, b)| relative_difference(*a, *b, typical))
+        .collect())
 }
 
 /// `name` and its three channels as named numbers of a witness; one number where the channels agree.

@@ -1,30 +1,38 @@
 //! f(ωi→ωr) n(ωi)² = f(ωr→ωi) n(ωr)², n the index of refraction of the side that a direction is on.
 
-use super::{relative_difference, rng, with_colour};
+use super::{differences, rng, with_colour};
 use crate::check::Checker;
+use crate::reflection::SubjectFailed;
 use crate::search::{typical, worst_pair};
+use crate::subject::Pair;
 use crate::verdict::{Property, Verdict, Witness};
-use gonio_num::Vec3;
 
 /// The worst relative difference of f(wi, wo) n(wi)² and f(wo, wi) n(wo)²; n is 1 for what only reflects.
 ///
 /// No chance enters a failure: the difference at the witness is above the bound whatever the random numbers were, and
 /// the bound is far above what rounding makes of the same formula with its arguments exchanged.
-pub(super) fn check(c: &Checker) -> Verdict {
+pub(super) fn check(c: &Checker) -> Result<Verdict, SubjectFailed> {
     let (subject, region) = (c.subject, c.subject.region());
     // Radiance in units of n² of the side it arrives from: what both orders of the directions must agree on.
-    let eval = |wi: Vec3<f64>, wo: Vec3<f64>| {
-        let (f, n2) = ((subject.eval)(wi, wo), subject.index_squared(wi));
-        [0, 1, 2].map(|k| f[k] * n2[k])
+    let eval = |pairs: &[Pair]| {
+        let mut f = subject.eval(pairs)?;
+        for (f, (wi, _)) in f.iter_mut().zip(pairs) {
+            let n2 = subject.index_squared(*wi);
+            *f = [0, 1, 2].map(|k| f[k] * n2[k]);
+        }
+        Ok(f)
     };
-    let scale = typical(&eval, region, &mut rng(c, Property::Reciprocity, "typical"));
+    let scale = typical(eval, region, &mut rng(c, Property::Reciprocity, "typical"))?;
     let worst = worst_pair(
         &mut rng(c, Property::Reciprocity, "pairs"),
         region,
         c.settings.pairs,
         c.settings.nudge(),
-        |wi, wo| relative_difference(eval(wi, wo), eval(wo, wi), scale),
-    );
+        |pairs: &[Pair]| {
+            let exchanged: Vec<Pair> = pairs.iter().map(|(wi, wo)| (*wo, *wi)).collect();
+            differences(&eval(pairs)?, &eval(&exchanged)?, scale)
+        },
+    )?;
     let bound = c.settings.relative_bound;
     let mut v = Verdict::passing(
         Property::Reciprocity,
@@ -32,7 +40,8 @@ pub(super) fn check(c: &Checker) -> Verdict {
         bound,
         2 * worst.evaluations,
     );
-    let (a, b) = (eval(worst.wi, worst.wo), eval(worst.wo, worst.wi));
+    let both = eval(&[(worst.wi, worst.wo), (worst.wo, worst.wi)])?;
+    let (a, b) = (both[0], both[1]);
     let witness = Witness::pair(worst.wi, worst.wo);
     let names = if subject.only_reflects() {
         ["f(wi, wo)", "f(wo, wi)"]
@@ -45,5 +54,5 @@ pub(super) fn check(c: &Checker) -> Verdict {
         "worst relative difference of {} and {}: {:.3e}",
         names[0], names[1], worst.figure
     );
-    v.judge(worst.figure > bound, c.expect.reciprocal)
+    Ok(v.judge(worst.figure > bound, c.expect.reciprocal))
 }

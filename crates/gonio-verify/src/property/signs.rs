@@ -5,7 +5,9 @@ use crate::check::Checker;
 use crate::directions::{
     Region, awkward, awkward_about, awkward_numbers, flipped as down, random_pair,
 };
+use crate::reflection::{SubjectFailed, SubjectSample};
 use crate::search::typical;
+use crate::subject::{BATCH, Draw, Pair};
 use crate::verdict::{Property, Verdict, Witness};
 use gonio_num::Vec3;
 
@@ -34,8 +36,15 @@ impl Tally {
     }
 }
 
+/// One question.
+enum Query {
+    Pair(Pair),
+    Draw(Draw),
+}
+
 struct Sweep<'c, 'a> {
     c: &'c Checker<'a>,
+    queries: Vec<Query>,
     not_finite: Tally,
     negative: Tally,
     below: Tally,
@@ -45,6 +54,52 @@ struct Sweep<'c, 'a> {
 }
 
 impl Sweep<'_, '_> {
+    fn pair(&mut self, wi: Vec3<f64>, wo: Vec3<f64>) {
+        self.queries.push(Query::Pair((wi, wo)));
+    }
+
+    fn draw(&mut self, wo: Vec3<f64>, u: [f64; 3]) {
+        if self.c.subject.has_sample() {
+            self.queries.push(Query::Draw((wo, u)));
+        } else {
+            self.samples += 1;
+        }
+    }
+
+    /// Asks what has been collected, if that is a batch; whatever is left, at the `end`.
+    fn ask(&mut self, end: bool) -> Result<(), SubjectFailed> {
+        if !end && self.queries.len() < BATCH {
+            return Ok(());
+        }
+        let queries = std::mem::take(&mut self.queries);
+        self.samples += queries.len() as u64;
+        let (mut pairs, mut draws) = (Vec::new(), Vec::new());
+        for query in &queries {
+            match query {
+                Query::Pair(pair) => pairs.push(*pair),
+                Query::Draw(draw) => draws.push(*draw),
+            }
+        }
+        let mut values = self.c.subject.eval(&pairs)?.into_iter();
+        let mut densities = self.c.subject.pdf(&pairs)?.into_iter();
+        let mut drawn = self.c.subject.draw(&draws)?.into_iter();
+        for query in queries {
+            match query {
+                Query::Pair(pair) => {
+                    let answer = values.next().zip(densities.next());
+                    let (f, p) = answer.expect("invariant: an answer a pair");
+                    self.looked_at(pair, f, p);
+                }
+                Query::Draw((wo, u)) => {
+                    if let Some(s) = drawn.next().flatten() {
+                        self.drawn(wo, u, &s);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn number(&mut self, x: f64, unit: f64, witness: impl Fn() -> Witness) {
         if !x.is_finite() {
             self.not_finite.add(1.0, witness);
@@ -53,10 +108,8 @@ impl Sweep<'_, '_> {
         }
     }
 
-    fn pair(&mut self, wi: Vec3<f64>, wo: Vec3<f64>) {
-        self.samples += 1;
+    fn looked_at(&mut self, (wi, wo): Pair, f: [f64; 3], p: f64) {
         let below = self.c.subject.only_reflects() && (wi.z < 0.0 || wo.z < 0.0);
-        let f = (self.c.subject.eval)(wi, wo);
         for x in f {
             self.number(x, self.scale, || Witness::pair(wi, wo).value("f", x));
             if below && x.is_finite() && x != 0.0 {
@@ -64,21 +117,14 @@ impl Sweep<'_, '_> {
                     .add(x.abs(), || Witness::pair(wi, wo).value("f", x));
             }
         }
-        if let Some(pdf) = self.c.subject.pdf {
-            let p = pdf(wi, wo);
-            self.number(p, 1.0, || Witness::pair(wi, wo).value("pdf", p));
-            if below && p.is_finite() && p != 0.0 {
-                self.below
-                    .add(p.abs(), || Witness::pair(wi, wo).value("pdf", p));
-            }
+        self.number(p, 1.0, || Witness::pair(wi, wo).value("pdf", p));
+        if below && p.is_finite() && p != 0.0 {
+            self.below
+                .add(p.abs(), || Witness::pair(wi, wo).value("pdf", p));
         }
     }
 
-    fn draw(&mut self, wo: Vec3<f64>, u: [f64; 3]) {
-        self.samples += 1;
-        let Some(s) = self.c.subject.draw(wo, u) else {
-            return;
-        };
+    fn drawn(&mut self, wo: Vec3<f64>, u: [f64; 3], s: &SubjectSample) {
         let witness = || Witness::pair(s.wi, wo).drawn(u);
         for x in s.wi.to_array() {
             // A coordinate may have either sign.
@@ -101,11 +147,13 @@ impl Sweep<'_, '_> {
 
 /// Sweeps random pairs, pairs with one or both directions below the horizon, the corpus of awkward directions, and the
 /// corpus of awkward random numbers. No chance is involved in a failure: each is a value that was returned.
-pub(super) fn check(c: &Checker) -> [Verdict; 3] {
+pub(super) fn check(c: &Checker) -> Result<[Verdict; 3], SubjectFailed> {
     let mut random = rng(c, Property::Finite, "pairs");
-    let scale = typical(c.subject.eval, c.subject.region(), &mut random);
+    let eval = |pairs: &[Pair]| c.subject.eval(pairs);
+    let scale = typical(eval, c.subject.region(), &mut random)?;
     let mut sweep = Sweep {
         c,
+        queries: Vec::with_capacity(BATCH),
         not_finite: Tally::new(),
         negative: Tally::new(),
         below: Tally::new(),
@@ -123,6 +171,7 @@ pub(super) fn check(c: &Checker) -> [Verdict; 3] {
             sweep.draw(wo, u);
             sweep.draw(down(wo), u);
         }
+        sweep.ask(false)?;
     }
     for k in 0..c.settings.pairs {
         let (wi, wo) = random_pair(&mut random, Region::Above);
@@ -135,7 +184,9 @@ pub(super) fn check(c: &Checker) -> [Verdict; 3] {
             2 => sweep.draw(down(wo), u),
             _ => sweep.pair(down(wi), down(wo)),
         }
+        sweep.ask(false)?;
     }
+    sweep.ask(true)?;
     let Sweep {
         not_finite,
         negative,
@@ -176,5 +227,5 @@ pub(super) fn check(c: &Checker) -> [Verdict; 3] {
     } else {
         Verdict::not_applicable(Property::Horizon, "the subject also transmits")
     };
-    [finite, signs, horizon]
+    Ok([finite, signs, horizon])
 }

@@ -4,8 +4,9 @@ use super::furnace::{Furnace, viewers};
 use super::rng;
 use crate::check::Checker;
 use crate::directions::{awkward, awkward_numbers, flipped, moved};
+use crate::reflection::{SubjectFailed, SubjectSample};
 use crate::statistics::sidak;
-use crate::subject::SubjectSample;
+use crate::subject::{BATCH, Draw, Pair};
 use crate::verdict::{Property, Verdict, Witness};
 use gonio_num::Vec3;
 
@@ -18,64 +19,104 @@ struct Worst {
 }
 
 impl Worst {
-    /// Compares one sample with `eval` and `pdf`.
-    fn add(&mut self, c: &Checker, wo: Vec3<f64>, u: [f64; 3], s: &SubjectSample) {
-        if s.delta || !s.wi.is_finite() || !s.pdf.is_finite() {
-            return;
-        }
-        self.compared += 1;
-        let (mut figure, expected, density) = mismatch(c, wo, s, s.wi);
-        if figure > self.figure.max(c.settings.weight_bound) {
-            // On the edge of a table's cell the density of the draw may be that of the other side: such a mismatch
-            // vanishes beside it.
-            for around in [0.4, 2.0, 3.6, 5.2] {
-                let beside = moved(s.wi, c.settings.nudge(), around);
-                figure = figure.min(mismatch(c, wo, s, beside).0);
+    /// Draws, and compares each with `eval` and `pdf`.
+    fn add(&mut self, c: &Checker, queries: &[Draw]) -> Result<(), SubjectFailed> {
+        self.samples += queries.len() as u64;
+        let drawn: Vec<(Draw, SubjectSample)> = queries
+            .iter()
+            .zip(c.subject.draw(queries)?)
+            .filter_map(|(query, s)| Some((*query, s?)))
+            .filter(|(_, s)| !s.delta && s.wi.is_finite() && s.pdf.is_finite())
+            .collect();
+        self.compared += drawn.len() as u64;
+        let places: Vec<Place> = drawn.iter().map(|((wo, _), s)| (*s, s.wi, *wo)).collect();
+        for (((wo, u), s), found) in drawn.iter().zip(mismatches(c, &places)?) {
+            let Mismatch {
+                mut figure,
+                weight,
+                density,
+            } = found;
+            if figure > self.figure.max(c.settings.weight_bound) {
+                // On the edge of a table's cell the density of the draw may be that of the other side: such a mismatch
+                // vanishes beside it.
+                let beside = [0.4, 2.0, 3.6, 5.2]
+                    .map(|around| (*s, moved(s.wi, c.settings.nudge(), around), *wo));
+                for beside in mismatches(c, &beside)? {
+                    figure = figure.min(beside.figure);
+                }
+            }
+            // A mismatch of a vector that isn't unit is no matter of edges.
+            figure = figure.max((s.wi.length() - 1.0).abs());
+            if figure > self.figure {
+                self.figure = figure;
+                let mut w = Witness::pair(s.wi, *wo)
+                    .drawn(*u)
+                    .value("pdf of the sample", s.pdf)
+                    .value("pdf(wi, wo)", density)
+                    .value("length of wi", s.wi.length());
+                w = super::with_colour(w, "weight", s.weight);
+                w = super::with_colour(w, "f·|cosθi| / pdf", weight);
+                self.witness = Some(w);
             }
         }
-        // A mismatch of a vector that isn't unit is no matter of edges.
-        figure = figure.max((s.wi.length() - 1.0).abs());
-        if figure > self.figure {
-            self.figure = figure;
-            let mut w = Witness::pair(s.wi, wo)
-                .drawn(u)
-                .value("pdf of the sample", s.pdf)
-                .value("pdf(wi, wo)", density)
-                .value("length of wi", s.wi.length());
-            w = super::with_colour(w, "weight", s.weight);
-            w = super::with_colour(w, "f·|cosθi| / pdf", expected);
-            self.witness = Some(w);
-        }
+        Ok(())
     }
 }
 
-/// The relative difference of a draw's density and weight from those of `eval` and `pdf` at `wi`; the expected weight and
-/// density.
-fn mismatch(c: &Checker, wo: Vec3<f64>, s: &SubjectSample, wi: Vec3<f64>) -> (f64, [f64; 3], f64) {
-    let density = c.subject.pdf.map_or(s.pdf, |pdf| pdf(wi, wo));
-    let f = (c.subject.eval)(wi, wo);
-    let expected = f.map(|f| f * wi.z.abs() / density);
-    if density == 0.0 {
-        return (f64::INFINITY, expected, density);
-    }
-    let mut figure = (s.pdf - density).abs() / s.pdf.abs().max(density.abs());
-    for (given, expected) in s.weight.into_iter().zip(expected) {
-        // Weights are of order 1: a thousandth of that is the smallest size that a difference is held against.
-        let size = given.abs().max(expected.abs()) + 1e-3;
-        // NaN is another property's business: it never wins.
-        figure = figure.max((given - expected).abs() / size);
-    }
-    (figure, expected, density)
+/// A draw, the direction wi to compare it at, and wo.
+type Place = (SubjectSample, Vec3<f64>, Vec3<f64>);
+
+/// The relative difference of a draw's density and weight from those of `eval` and `pdf`, which are the expected ones.
+struct Mismatch {
+    figure: f64,
+    weight: [f64; 3],
+    density: f64,
+}
+
+fn mismatches(c: &Checker, places: &[Place]) -> Result<Vec<Mismatch>, SubjectFailed> {
+    let pairs: Vec<Pair> = places.iter().map(|(_, wi, wo)| (*wi, *wo)).collect();
+    let values = c.subject.eval(&pairs)?;
+    let densities = if c.subject.has_pdf() {
+        c.subject.pdf(&pairs)?
+    } else {
+        places.iter().map(|(s, ..)| s.pdf).collect()
+    };
+    let all = places.iter().zip(values.iter().zip(densities));
+    Ok(all
+        .map(|((s, wi, _), (f, density))| {
+            let weight = f.map(|f| f * wi.z.abs() / density);
+            if density == 0.0 {
+                return Mismatch {
+                    figure: f64::INFINITY,
+                    weight,
+                    density,
+                };
+            }
+            let mut figure = (s.pdf - density).abs() / s.pdf.abs().max(density.abs());
+            for (given, expected) in s.weight.into_iter().zip(weight) {
+                // Weights are of order 1: a thousandth of that is the smallest size that a difference is held against.
+                let size = given.abs().max(expected.abs()) + 1e-3;
+                // NaN is another property's business: it never wins.
+                figure = figure.max((given - expected).abs() / size);
+            }
+            Mismatch {
+                figure,
+                weight,
+                density,
+            }
+        })
+        .collect())
 }
 
 /// Three things. At each draw the weight is f·|cosθi| / pdf and the returned density is pdf: no chance involved. Where f
 /// reflects, pdf isn't 0 (else sampling never finds that light): by quadrature. And the mean weight is the albedo by
 /// quadrature, within Bernstein's bound with the weight's true variance and range, so that rare large weights don't raise a
 /// false alarm.
-pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
+pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Result<Verdict, SubjectFailed> {
     let property = Property::SampleWeight;
-    if c.subject.sample.is_none() {
-        return Verdict::not_applicable(property, "the subject can't be sampled");
+    if !c.subject.has_sample() {
+        let why = "the subject can't be sampled";
+        return Ok(Verdict::not_applicable(property, why));
     }
     let mut worst = Worst {
         figure: 0.0,
@@ -86,13 +127,14 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
     let mut random = rng(c, property, "draws");
     let directions = viewers(c, 4 * c.settings.directions, 89.9);
     let each = c.settings.pairs / directions.len() as u64 + 1;
+    let mut queries: Vec<Draw> = Vec::new();
     for wo in directions {
         for _ in 0..each {
             let u = [random.next_f64(), random.next_f64(), random.next_f64()];
-            worst.samples += 1;
-            if let Some(s) = c.subject.draw(wo, u) {
-                worst.add(c, wo, u, &s);
-            }
+            queries.push((wo, u));
+        }
+        if queries.len() >= BATCH {
+            worst.add(c, &std::mem::take(&mut queries))?;
         }
     }
     let mut steep: Vec<_> = awkward().into_iter().filter(|w| w.z > 1e-3).collect();
@@ -100,22 +142,16 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
         steep.extend(steep.clone().into_iter().map(flipped));
     }
     for wo in steep {
-        for u in awkward_numbers() {
-            worst.samples += 1;
-            if let Some(s) = c.subject.draw(wo, u) {
-                worst.add(c, wo, u, &s);
-            }
-        }
+        queries.extend(awkward_numbers().into_iter().map(|u| (wo, u)));
     }
+    worst.add(c, &queries)?;
 
     let bound = c.settings.weight_bound;
     let mut v = Verdict::passing(property, worst.figure, bound, worst.samples);
     let deltas: u64 = furnaces.iter().map(|f| f.delta_draws).sum();
-    if c.subject.pdf.is_none() && worst.compared == 0 && deltas == 0 {
-        return Verdict::not_applicable(
-            property,
-            "no direction is ever drawn, and there is no pdf",
-        );
+    if !c.subject.has_pdf() && worst.compared == 0 && deltas == 0 {
+        let why = "no direction is ever drawn, and there is no pdf";
+        return Ok(Verdict::not_applicable(property, why));
     }
     v.witness = worst.witness;
     v.detail = match (worst.compared, deltas) {
@@ -127,7 +163,7 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
         ),
     };
     let mut violated = worst.figure > bound;
-    if c.subject.pdf.is_some() {
+    if c.subject.has_pdf() {
         let rate = c.settings.false_positive_rate;
         v.false_positive_rate = rate;
         v.samples += furnaces.iter().map(|f| f.evaluations).sum::<u64>();
@@ -140,7 +176,7 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
             }
         }
     }
-    v.judge(violated, true)
+    Ok(v.judge(violated, true))
 }
 
 type Found = Option<(f64, f64, Witness, String)>;

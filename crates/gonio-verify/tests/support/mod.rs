@@ -21,13 +21,11 @@ pub fn with_subject<T>(name: &str, r: &dyn Reflection, body: impl FnOnce(&Subjec
     let eval = |wi: V, wo: V| r.eval(wi, wo);
     let pdf = |wi: V, wo: V| r.pdf(wi, wo);
     let sample = |wo: V, u: [f64; 3]| r.sample(wo, u);
-    body(&Subject {
-        name: name.into(),
-        eval: &eval,
-        pdf: Some(&pdf),
-        sample: Some(&sample),
-        relative_ior: None,
-    })
+    body(
+        &Subject::new(name, &eval)
+            .with_pdf(&pdf)
+            .with_sample(&sample),
+    )
 }
 
 pub fn above(wi: V, wo: V) -> bool {

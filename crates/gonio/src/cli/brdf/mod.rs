@@ -1,5 +1,6 @@
 //! `gonio brdf`.
 
+mod check;
 mod convert;
 mod info;
 
@@ -8,8 +9,6 @@ use super::parse::{self, Angles};
 use super::presets;
 use super::terminal::{print, print_json, significant, warn};
 use gonio_brdf::{Brdf, Model, ModelInfo, ModelSpec, registry};
-use gonio_verify::{Effort, Report};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -65,40 +64,8 @@ pub(super) enum Command {
     #[command(after_help = convert::help())]
     Convert(Box<convert::Arguments>),
     /// Is it physical? Reciprocity, energy, isotropy, sampling, each with a bound and a witness
-    #[command(
-        after_help = "Examples:\n  gonio brdf check all\n  gonio brdf check phong:exponent=20 --effort thorough\n\n\
-        Exits with 1 if a property fails that is not declared to be missing."
-    )]
-    Check {
-        /// NAME, NAME:key=value,…, or all
-        spec: String,
-        /// How hard to look
-        #[arg(long, value_enum, default_value_t = EffortName::Standard)]
-        effort: EffortName,
-        /// Print the reports as JSON
-        #[arg(long)]
-        json: bool,
-    },
-}
-
-#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
-pub(super) enum EffortName {
-    /// About a tenth of a second a model
-    Quick,
-    /// About a second a model
-    Standard,
-    /// About ten seconds a model
-    Thorough,
-}
-
-impl From<EffortName> for Effort {
-    fn from(name: EffortName) -> Self {
-        match name {
-            EffortName::Quick => Self::Quick,
-            EffortName::Standard => Self::Standard,
-            EffortName::Thorough => Self::Thorough,
-        }
-    }
+    #[command(after_help = check::HELP)]
+    Check(check::Arguments),
 }
 
 pub(super) fn run(command: Command) -> Result<(), Failure> {
@@ -115,7 +82,7 @@ pub(super) fn run(command: Command) -> Result<(), Failure> {
         Command::Eval { spec, wi, wo, json } => eval(&spec, wi, wo, json),
         Command::Info { file, json } => info::run(&file, json),
         Command::Convert(arguments) => convert::run(*arguments),
-        Command::Check { spec, effort, json } => check(&spec, effort.into(), json),
+        Command::Check(arguments) => check::run(&arguments),
     }
 }
 
@@ -307,87 +274,9 @@ fn eval(text: &str, wi: Angles, wo: Angles, json: bool) -> Result<(), Failure> {
     print(&words)
 }
 
-fn check(text: &str, effort: Effort, json: bool) -> Result<(), Failure> {
-    let specs = if text == "all" {
-        gonio_brdf::showcase()
-    } else {
-        vec![ModelSpec::parse(text)?]
-    };
-    let bar = ProgressBar::new(specs.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:18.cyan/dim} {pos}/{len} {wide_msg}") {
-        bar.set_style(style.progress_chars("━━─"));
-    }
-    let mut reports: Vec<Report> = Vec::new();
-    for spec in &specs {
-        if spec.reads_files() {
-            let model: Model<f32, 3> = spec.build()?;
-            for line in model.warnings() {
-                bar.suspend(|| warn(&line));
-            }
-        }
-        bar.set_message(spec.to_string());
-        bar.tick();
-        let report = gonio_brdf::check(spec, effort)?;
-        if !json {
-            bar.suspend(|| print(&format!("{report}\n\n")))?;
-        }
-        reports.push(report);
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-    if json {
-        print_json(&reports)?;
-    }
-    judged(&reports)?;
-    if !json && reports.len() > 1 {
-        print(&format!("{} reflection functions passed", reports.len()))?;
-    }
-    Ok(())
-}
-
-/// Fails if a report says that its subject is not as declared.
-fn judged(reports: &[Report]) -> Result<(), Failure> {
-    let failed: Vec<&str> = reports
-        .iter()
-        .filter(|r| !r.passed())
-        .map(|r| r.subject.as_str())
-        .collect();
-    if failed.is_empty() {
-        return Ok(());
-    }
-    Err(
-        Failure::verification(format!("not as declared: {}", failed.join(", "))).with_help(
-            "each property that failed is shown above with the directions it is worst for",
-        ),
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gonio_num::Vec3;
-    use gonio_verify::{Expectation, Subject};
-
-    /// No model of the registry is other than it declares, so a closure is: a diffuse surface of albedo 2.
-    #[test]
-    fn a_verdict_that_fails_exits_with_1() {
-        let report = |albedo: f64| {
-            let eval = |wi: Vec3<f64>, wo: Vec3<f64>| match wi.z > 0.0 && wo.z > 0.0 {
-                true => [albedo / std::f64::consts::PI; 3],
-                false => [0.0; 3],
-            };
-            let subject = Subject::new("diffuse", &eval);
-            gonio_verify::check(
-                &subject,
-                &Expectation::default(),
-                Effort::Quick,
-                "exit code",
-            )
-        };
-        assert_eq!(judged(&[report(0.5)]), Ok(()));
-        let failure = judged(&[report(0.5), report(2.0)]).unwrap_err();
-        assert_eq!(failure.code(), 1);
-    }
 
     #[test]
     fn long_lines_are_broken_at_spaces() {
