@@ -1,5 +1,8 @@
 //! Broken reflection functions are caught, by the property that the fault belongs to.
 
+// Helpers of tests are tests.
+#![allow(clippy::unwrap_used)]
+
 mod support;
 
 use gonio_verify::{Effort, Expectation, Outcome, Property, Report, check};

@@ -1,5 +1,8 @@
 //! Right reflection functions pass: no false alarms.
 
+// Helpers of tests are tests.
+#![allow(clippy::unwrap_used)]
+
 mod support;
 
 use gonio_verify::{Checker, Effort, Expectation, Outcome, Precision, Property, Settings, check};
