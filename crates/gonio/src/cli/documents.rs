@@ -84,7 +84,7 @@ fn fault(words: &[String]) -> Option<String> {
         Command::Brdf(
             brdf::Command::Show { name: spec, .. }
             | brdf::Command::Eval { spec, .. }
-            | brdf::Command::Check { spec, .. },
+            | brdf::Command::Check(brdf::check::Arguments { spec, .. }),
         ) if spec != "all" => spec,
         _ => return None,
     };

@@ -10,9 +10,9 @@ pub(super) const HELP: &str = "Examples:\n  gonio brdf check all\n  gonio brdf c
     Exits with 1 if a property fails that is not declared to be missing.";
 
 #[derive(clap::Args)]
-pub(crate) struct Arguments {
+pub(in crate::cli) struct Arguments {
     /// NAME, NAME:key=value,…, or all
-    spec: String,
+    pub(in crate::cli) spec: String,
     /// How hard to look
     #[arg(long, value_enum, default_value_t = EffortName::Standard)]
     effort: EffortName,
@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
 }
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
-enum EffortName {
+pub(in crate::cli) enum EffortName {
     /// About a tenth of a second a model
     Quick,
     /// About a second a model

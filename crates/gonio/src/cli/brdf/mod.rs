@@ -1,6 +1,6 @@
 //! `gonio brdf`.
 
-mod check;
+pub(in crate::cli) mod check;
 mod convert;
 mod info;
 
