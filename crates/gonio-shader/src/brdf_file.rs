@@ -14,9 +14,9 @@
 //!
 //! Lines beginning with `#` are comments, in the header and, as BRDF Explorer reads them, in the shader.
 
+use crate::ShaderError;
 use crate::parameter::{ParameterKind, number};
 use crate::source::Source;
-use crate::ShaderError;
 
 /// A parameter of the header.
 #[derive(Debug, Clone, PartialEq)]
@@ -164,7 +164,9 @@ fn parameter(line: &str) -> Result<Declared, String> {
     let (kind, default, range) = match (kind, numbers.as_slice()) {
         ("float", &[low, high, default]) => {
             if low > high {
-                return Err(format!("found the range {low} to {high}, expected the smaller end first"));
+                return Err(format!(
+                    "found the range {low} to {high}, expected the smaller end first"
+                ));
             }
             // A default outside its own range is one that the file's author uses.
             let range = (low.min(default), high.max(default));
@@ -172,7 +174,11 @@ fn parameter(line: &str) -> Result<Declared, String> {
         }
         ("color", &[r, g, b]) => {
             let high = r.max(g).max(b).max(1.0);
-            (ParameterKind::Colour, [r, g, b], (r.min(g).min(b).min(0.0), high))
+            (
+                ParameterKind::Colour,
+                [r, g, b],
+                (r.min(g).min(b).min(0.0), high),
+            )
         }
         ("bool", &[value, ..]) => {
             let value = if value == 0.0 { 0.0 } else { 1.0 };
@@ -187,7 +193,9 @@ fn parameter(line: &str) -> Result<Declared, String> {
             return Err(format!("found {} numbers, expected `{form}`", found.len()));
         }
         _ => {
-            return Err(format!("found `{kind}`, expected `float`, `color` or `bool`"));
+            return Err(format!(
+                "found `{kind}`, expected `float`, `color` or `bool`"
+            ));
         }
     };
     Ok(Declared {

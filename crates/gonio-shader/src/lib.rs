@@ -45,3 +45,8 @@ pub use parameter::{Parameter, ParameterKind};
 pub use program::Program;
 pub use shader::{Drawn, Settings, Shader};
 pub use source::{LARGEST_SOURCE, Language};
+
+/// The README's Rust, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

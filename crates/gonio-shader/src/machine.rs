@@ -230,7 +230,11 @@ impl<R: ShaderNumber> Work for Run<'_, R> {
                             let from = (base + found) as usize * w + k;
                             let to = d as usize * w + k;
                             let here = R::int_test(index, R::int(found), |i, j| i.min(last) == j);
-                            let here = if lane == 0 { R::Mask::splat(true) } else { here };
+                            let here = if lane == 0 {
+                                R::Mask::splat(true)
+                            } else {
+                                here
+                            };
                             match file {
                                 File::Real => reals[to] = R::select(here, reals[from], reals[to]),
                                 File::Int => ints[to] = R::int_select(here, ints[from], ints[to]),
@@ -252,8 +256,8 @@ impl<R: ShaderNumber> Work for Run<'_, R> {
                                 continue;
                             }
                             let to = (base + found) as usize * w + k;
-                            let here = active
-                                & R::int_test(index, R::int(found), |i, j| i.min(last) == j);
+                            let here =
+                                active & R::int_test(index, R::int(found), |i, j| i.min(last) == j);
                             match file {
                                 File::Real => reals[to] = R::select(here, reals[from], reals[to]),
                                 File::Int => ints[to] = R::int_select(here, ints[from], ints[to]),

@@ -137,7 +137,10 @@ impl ShaderModule {
     }
 
     /// The functions of a name: GLSL may have several.
-    pub(crate) fn named<'a>(&'a self, name: &'a str) -> impl Iterator<Item = Handle<Function>> + 'a {
+    pub(crate) fn named<'a>(
+        &'a self,
+        name: &'a str,
+    ) -> impl Iterator<Item = Handle<Function>> + 'a {
         self.module
             .functions
             .iter()
@@ -357,7 +360,9 @@ impl ShaderModule {
             let [x, ..] = default;
             return Err(self.source.error_at(
                 at,
-                format!("parameter `{name}` is {x} when not given, outside its range {low}..{high}"),
+                format!(
+                    "parameter `{name}` is {x} when not given, outside its range {low}..{high}"
+                ),
             ));
         }
         Ok(Parameter {

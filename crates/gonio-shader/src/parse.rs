@@ -168,7 +168,14 @@ fn validate(source: &Source, module: Module) -> Result<(Module, ModuleInfo), Sha
             }
             let spans = e.spans().filter_map(|(span, _)| span.to_range());
             let span = spans.min_by_key(|range| range.len()).map(Span::from);
-            Err(error_at(source, span, readable(&cause.to_string())))
+            let cause = cause.to_string();
+            // What naga says of functions in the wrong order names no function.
+            let message = if cause.contains("has not been processed yet") {
+                "a function calls one that is defined below it, or itself: shaders have no recursion".into()
+            } else {
+                readable(&cause)
+            };
+            Err(error_at(source, span, message))
         }
     }
 }

@@ -296,17 +296,18 @@ fn names(module: &ShaderModule, settings: &Settings) -> Result<Names, ShaderErro
         .collect();
     candidates.dedup();
     match candidates.as_slice() {
-        [one] => Ok(prefixed(
-            one.trim_end_matches("_eval"),
-            (*one).to_owned(),
-        )),
+        [one] => Ok(prefixed(one.trim_end_matches("_eval"), (*one).to_owned())),
         [] => Ok(plain("eval")),
         several => {
             let list: Vec<String> = several.iter().map(|n| format!("`{n}`")).collect();
-            Err(
-                ShaderError::new(&module.source.path, format!("found {}, expected one function to evaluate", list.join(", ")))
-                    .with_help(format!("choose one by entry={}", several[0])),
+            Err(ShaderError::new(
+                &module.source.path,
+                format!(
+                    "found {}, expected one function to evaluate",
+                    list.join(", ")
+                ),
             )
+            .with_help(format!("choose one by entry={}", several[0])))
         }
     }
 }
@@ -322,7 +323,10 @@ fn is_vec3(module: &ShaderModule, ty: Handle<Type>) -> bool {
 }
 
 fn is_number(module: &ShaderModule, ty: Handle<Type>) -> bool {
-    matches!(module.module.types[ty].inner, TypeInner::Scalar(Scalar::F32))
+    matches!(
+        module.module.types[ty].inner,
+        TypeInner::Scalar(Scalar::F32)
+    )
 }
 
 /// Whether the function takes this many vectors of three numbers and nothing else.
@@ -331,9 +335,9 @@ fn takes(module: &ShaderModule, f: &Function, vectors: usize) -> bool {
 }
 
 fn gives(module: &ShaderModule, f: &Function, number: bool, vector: bool) -> bool {
-    f.result.as_ref().is_some_and(|r| {
-        (number && is_number(module, r.ty)) || (vector && is_vec3(module, r.ty))
-    })
+    f.result
+        .as_ref()
+        .is_some_and(|r| (number && is_number(module, r.ty)) || (vector && is_vec3(module, r.ty)))
 }
 
 /// The function of this name that fits, or the error that none does.
@@ -397,7 +401,10 @@ fn sample_layout(
                 "vec3 {name}(vec3 wo, vec3 u, out vec3 wi, out float pdf) giving the weight, or a structure of wi, weight and pdf"
             ),
         };
-        module.error_at_function(handle, format!("found `{found}`{why}, expected `{expected}`"))
+        module.error_at_function(
+            handle,
+            format!("found `{found}`{why}, expected `{expected}`"),
+        )
     };
     let ins = f.arguments.iter().take_while(|a| is_vec3(module, a.ty));
     if ins.count() != 2 {
@@ -442,7 +449,10 @@ fn sample_layout(
         return Err(wrong(&format!(" without {}", missing.join(" and "))));
     };
     let coloured = is_vec3(module, weight.1);
-    if !is_vec3(module, wi.1) || !is_number(module, pdf.1) || !(coloured || is_number(module, weight.1)) {
+    if !is_vec3(module, wi.1)
+        || !is_number(module, pdf.1)
+        || !(coloured || is_number(module, weight.1))
+    {
         return Err(wrong(""));
     }
     let delta = match part("delta") {

@@ -117,15 +117,14 @@ impl Source {
                 _ => {}
             }
             if depth > DEEPEST || branches > 4 * DEEPEST {
-                return Err(self.error_at(
-                    at,
-                    format!("nested more than {DEEPEST} deep"),
-                ));
+                return Err(self.error_at(at, format!("nested more than {DEEPEST} deep")));
             }
             if words > LONGEST_STATEMENT {
                 return Err(self.error_at(
                     at,
-                    format!("more than {LONGEST_STATEMENT} words and signs without a semicolon or brace"),
+                    format!(
+                        "more than {LONGEST_STATEMENT} words and signs without a semicolon or brace"
+                    ),
                 ));
             }
         }
@@ -226,7 +225,10 @@ mod tests {
         assert_eq!(of("a.FRAG"), Some(Language::Glsl));
         assert_eq!(of("a.brdf"), Some(Language::Brdf));
         assert_eq!(of("a.txt"), None);
-        assert_eq!(Language::of_text("analytic\n::begin shader\n"), Language::Brdf);
+        assert_eq!(
+            Language::of_text("analytic\n::begin shader\n"),
+            Language::Brdf
+        );
         assert_eq!(Language::of_text("// x\nfn eval() {}"), Language::Wgsl);
         assert_eq!(Language::of_text("vec3 eval() {}"), Language::Glsl);
     }

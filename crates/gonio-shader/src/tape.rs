@@ -92,9 +92,16 @@ pub(crate) enum Op {
     /// (first register, whole number as above, source, mask, largest such number)
     Scatter(File, Reg, Reg, Reg, Reg, u32),
     /// Goes on at `to` unless the mask is true in any lane.
-    JumpUnless { mask: Reg, to: u32 },
+    JumpUnless {
+        mask: Reg,
+        to: u32,
+    },
     /// Goes back to `to` if the mask is true in any lane: the end of a loop.
-    Loop { mask: Reg, to: u32, source: u32 },
+    Loop {
+        mask: Reg,
+        to: u32,
+        source: u32,
+    },
 }
 
 /// A compiled function.

@@ -283,13 +283,13 @@ impl Emitter {
         d
     }
 
-    pub fn to_int(&mut self, f: fn(f64) -> u32, a: Reg) -> Reg {
+    pub fn int_of(&mut self, f: fn(f64) -> u32, a: Reg) -> Reg {
         let d = self.fresh(File::Int);
         self.push(Op::ToInt(f, d, a));
         d
     }
 
-    pub fn from_int(&mut self, f: fn(u32) -> f64, a: Reg) -> Reg {
+    pub fn real_of(&mut self, f: fn(u32) -> f64, a: Reg) -> Reg {
         let d = self.fresh(File::Real);
         self.push(Op::FromInt(f, d, a));
         d

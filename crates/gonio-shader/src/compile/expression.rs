@@ -98,9 +98,7 @@ impl<'m> Compiler<'m> {
                     let name = variable.name.as_deref().unwrap_or("this variable");
                     // Textures and the like say so themselves.
                     self.layouts.of(variable.ty)?;
-                    return unsupported(&format!(
-                        "`{name}` is a resource of a pipeline, which is"
-                    ));
+                    return unsupported(&format!("`{name}` is a resource of a pipeline, which is"));
                 }
             },
             Expression::LocalVariable(local) => {
@@ -223,9 +221,7 @@ impl<'m> Compiler<'m> {
         let inner = self.pointee(frame, base);
         let (count, stride) = self.layouts.elements(inner, span)?;
         Ok(match bound {
-            Bound::Place(place) => {
-                Bound::Place(place.element(&self.e, index.reg, count, stride))
-            }
+            Bound::Place(place) => Bound::Place(place.element(&self.e, index.reg, count, stride)),
             Bound::Value(value) => Bound::Value(match self.e.constant_int(index.reg) {
                 Some(i) => {
                     let from = i.min(count - 1) as usize * stride;
@@ -429,15 +425,15 @@ impl<'m> Compiler<'m> {
             | (Kind::Bool, Kind::Bool)
             | (Kind::Sint | Kind::Uint, Kind::Sint | Kind::Uint) => slot(a.reg),
             (Kind::Real, Kind::Sint | Kind::Uint) if bits => {
-                slot(e.to_int(convert::to_bits, a.reg))
+                slot(e.int_of(convert::to_bits, a.reg))
             }
-            (Kind::Real, Kind::Sint) => slot(e.to_int(convert::to_sint, a.reg)),
-            (Kind::Real, Kind::Uint) => slot(e.to_int(convert::to_uint, a.reg)),
+            (Kind::Real, Kind::Sint) => slot(e.int_of(convert::to_sint, a.reg)),
+            (Kind::Real, Kind::Uint) => slot(e.int_of(convert::to_uint, a.reg)),
             (_, Kind::Real) if bits && a.kind != Kind::Bool => {
-                slot(e.from_int(convert::from_bits, a.reg))
+                slot(e.real_of(convert::from_bits, a.reg))
             }
-            (Kind::Sint, Kind::Real) => slot(e.from_int(convert::from_sint, a.reg)),
-            (Kind::Uint, Kind::Real) => slot(e.from_int(convert::from_uint, a.reg)),
+            (Kind::Sint, Kind::Real) => slot(e.real_of(convert::from_sint, a.reg)),
+            (Kind::Uint, Kind::Real) => slot(e.real_of(convert::from_uint, a.reg)),
             (Kind::Real, Kind::Bool) => {
                 let zero = e.lit(0.0);
                 let is_zero = e.compare(Compare::Equal, a.reg, zero);

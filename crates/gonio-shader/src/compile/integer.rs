@@ -53,7 +53,11 @@ pub(super) fn first_trailing_bit(x: u32) -> u32 {
 
 /// The highest bit that is set; −1 if none is.
 pub(super) fn first_leading_bit(x: u32) -> u32 {
-    if x == 0 { u32::MAX } else { 31 - x.leading_zeros() }
+    if x == 0 {
+        u32::MAX
+    } else {
+        31 - x.leading_zeros()
+    }
 }
 
 /// The highest bit that differs from the sign; −1 if none does.

@@ -69,7 +69,9 @@ impl<'m> Layouts<'m> {
                     if kinds.len() > LARGEST {
                         return Err(Fault::new(
                             span,
-                            format!("the structure is too large: a shader may have at most {LARGEST} numbers"),
+                            format!(
+                                "the structure is too large: a shader may have at most {LARGEST} numbers"
+                            ),
                         ));
                     }
                 }

@@ -94,7 +94,7 @@ impl Compiler<'_> {
             M::Frexp => {
                 let exponents: Vec<Reg> = a
                     .iter()
-                    .map(|s| self.e.to_int(convert::exponent, s.reg))
+                    .map(|s| self.e.int_of(convert::exponent, s.reg))
                     .collect();
                 let mut both: Vec<Slot> = Vec::new();
                 for (x, &exponent) in a.iter().zip(&exponents) {
@@ -108,11 +108,11 @@ impl Compiler<'_> {
                 both.into()
             }
             // Packed numbers.
-            M::Pack4x8snorm => self.pack(a, 8, |c, x| c.e.to_int(convert::snorm8, x)),
-            M::Pack4x8unorm => self.pack(a, 8, |c, x| c.e.to_int(convert::unorm8, x)),
-            M::Pack2x16snorm => self.pack(a, 16, |c, x| c.e.to_int(convert::snorm16, x)),
-            M::Pack2x16unorm => self.pack(a, 16, |c, x| c.e.to_int(convert::unorm16, x)),
-            M::Pack2x16float => self.pack(a, 16, |c, x| c.e.to_int(half::to_half, x)),
+            M::Pack4x8snorm => self.pack(a, 8, |c, x| c.e.int_of(convert::snorm8, x)),
+            M::Pack4x8unorm => self.pack(a, 8, |c, x| c.e.int_of(convert::unorm8, x)),
+            M::Pack2x16snorm => self.pack(a, 16, |c, x| c.e.int_of(convert::snorm16, x)),
+            M::Pack2x16unorm => self.pack(a, 16, |c, x| c.e.int_of(convert::unorm16, x)),
+            M::Pack2x16float => self.pack(a, 16, |c, x| c.e.int_of(half::to_half, x)),
             M::Pack4xI8 | M::Pack4xU8 => self.pack(a, 8, |c, x| c.e.int_map(|i| i & 0xff, x)),
             M::Pack4xI8Clamp => self.pack(a, 8, |c, x| {
                 let limited = c.e.int_map(integer::clamp_byte_signed, x);
@@ -267,8 +267,8 @@ impl Compiler<'_> {
 
     /// x·2ⁱ, in two factors so that neither overflows before the product does.
     fn ldexp(&mut self, x: Reg, i: Reg) -> Reg {
-        let first = self.e.from_int(convert::power_of_half, i);
-        let second = self.e.from_int(convert::power_of_rest, i);
+        let first = self.e.real_of(convert::power_of_half, i);
+        let second = self.e.real_of(convert::power_of_rest, i);
         let half = self.e.mul(x, first);
         self.e.mul(half, second)
     }
@@ -457,8 +457,8 @@ impl Compiler<'_> {
                 self.e.div(one, root)
             }
             M::QuantizeToF16 => {
-                let bits = self.e.to_int(half::to_half, a);
-                self.e.from_int(half::from_half, bits)
+                let bits = self.e.int_of(half::to_half, a);
+                self.e.real_of(half::from_half, bits)
             }
             _ => return Err(unsupported(fun, span)),
         })
@@ -468,8 +468,16 @@ impl Compiler<'_> {
     fn of_integers(&mut self, fun: M, x: &[Slot], span: Span) -> Result<Slot, Fault> {
         let a = x[0];
         let signed = a.kind == Kind::Sint;
-        let min = if signed { integer::min_signed } else { u32::min };
-        let max = if signed { integer::max_signed } else { u32::max };
+        let min = if signed {
+            integer::min_signed
+        } else {
+            u32::min
+        };
+        let max = if signed {
+            integer::max_signed
+        } else {
+            u32::max
+        };
         let reg = match fun {
             M::Abs if signed => self.e.int_map(integer::abs_signed, a.reg),
             M::Abs => a.reg,
@@ -512,12 +520,7 @@ impl Compiler<'_> {
         Ok(Slot { reg, ..a })
     }
 
-    fn pack(
-        &mut self,
-        a: &Value,
-        bits: u32,
-        mut f: impl FnMut(&mut Self, Reg) -> Reg,
-    ) -> Value {
+    fn pack(&mut self, a: &Value, bits: u32, mut f: impl FnMut(&mut Self, Reg) -> Reg) -> Value {
         let mut sum: Option<Reg> = None;
         for (k, slot) in a.iter().enumerate() {
             let part = f(self, slot.reg);
@@ -536,7 +539,7 @@ impl Compiler<'_> {
             .map(|k| {
                 let shift = self.e.int(k * bits);
                 let part = self.e.int_zip(u32::wrapping_shr, a[0].reg, shift);
-                real(self.e.from_int(f, part))
+                real(self.e.real_of(f, part))
             })
             .collect()
     }

@@ -83,6 +83,8 @@ struct Compiler<'m> {
     active: Vec<Handle<Function>>,
     /// How many calls have been written out.
     calls: usize,
+    /// The last statement whose place is known: GLSL's expressions often have none.
+    near: Span,
 }
 
 /// Compiles the function `entry`, whose arguments are rows of numbers.
@@ -114,6 +116,7 @@ pub(crate) fn compile(
         regions: vec![Region::root()],
         active: Vec::new(),
         calls: 0,
+        near: module.functions.get_span(entry),
     };
     compiler.parameters(parameters)?;
     compiler.globals()?;
@@ -141,12 +144,11 @@ impl<'m> Compiler<'m> {
                 self.e.tape.parameters.push(number);
                 let reg = match kind {
                     Kind::Real => number,
-                    Kind::Sint => self.e.to_int(convert::to_sint, number),
-                    Kind::Uint => self.e.to_int(convert::to_uint, number),
+                    Kind::Sint => self.e.int_of(convert::to_sint, number),
+                    Kind::Uint => self.e.int_of(convert::to_uint, number),
                     Kind::Bool => {
                         let zero = self.e.lit(0.0);
-                        let is_zero =
-                            self.e.compare(crate::tape::Compare::Equal, number, zero);
+                        let is_zero = self.e.compare(crate::tape::Compare::Equal, number, zero);
                         self.e.not(is_zero)
                     }
                 };
@@ -198,7 +200,10 @@ impl<'m> Compiler<'m> {
                 None => kinds.iter().map(|&kind| self.e.zero(kind)).collect(),
             };
             if init.len() != kinds.len() {
-                return Err(Fault::new(span, "the initial value has another type than the variable"));
+                return Err(Fault::new(
+                    span,
+                    "the initial value has another type than the variable",
+                ));
             }
             self.global(handle, init);
         }
@@ -253,6 +258,18 @@ impl<'m> Compiler<'m> {
     }
 
     fn entry(mut self, entry: Handle<Function>) -> Result<Tape, Fault> {
+        let tape = self.write_entry(entry);
+        let near = self.near;
+        tape.map_err(|fault| match fault.span.is_defined() {
+            true => fault,
+            false => Fault {
+                span: near,
+                ..fault
+            },
+        })
+    }
+
+    fn write_entry(&mut self, entry: Handle<Function>) -> Result<Tape, Fault> {
         let function = &self.module.functions[entry];
         let mut arguments = Vec::new();
         let mut outputs: Vec<Rc<RefCell<Var>>> = Vec::new();
@@ -288,8 +305,8 @@ impl<'m> Compiler<'m> {
         for slot in slots {
             let reg = match slot.kind {
                 Kind::Real => slot.reg,
-                Kind::Sint => self.e.from_int(convert::from_sint, slot.reg),
-                Kind::Uint => self.e.from_int(convert::from_uint, slot.reg),
+                Kind::Sint => self.e.real_of(convert::from_sint, slot.reg),
+                Kind::Uint => self.e.real_of(convert::from_uint, slot.reg),
                 Kind::Bool => {
                     let (one, zero) = (self.e.lit(1.0), self.e.lit(0.0));
                     self.e.select_real(slot.reg, one, zero)
@@ -298,7 +315,7 @@ impl<'m> Compiler<'m> {
             self.e.tape.outputs.push(reg);
         }
         self.check_size(span)?;
-        Ok(self.e.finish())
+        Ok(std::mem::take(&mut self.e).finish())
     }
 
     fn check_size(&self, span: Span) -> Result<(), Fault> {

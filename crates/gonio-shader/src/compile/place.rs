@@ -162,9 +162,8 @@ pub(super) fn contiguous(e: &mut Emitter, value: &Value) -> Value {
     if in_order {
         return Rc::clone(value);
     }
-    let constant = |slot: &Slot| {
-        e.constant_real(slot.reg).is_some() && slot.kind == super::emit::Kind::Real
-    };
+    let constant =
+        |slot: &Slot| e.constant_real(slot.reg).is_some() && slot.kind == super::emit::Kind::Real;
     if value.iter().all(constant) {
         let copies: Option<Vec<Slot>> = value.iter().map(|&s| e.constant_copy(s)).collect();
         if let Some(copies) = copies {

@@ -75,9 +75,7 @@ pub(super) fn leave(e: &mut Emitter, regions: &mut [Region], outermost: usize) {
         region.left = true;
         e.push(Op::Logic(Logic::AndNot, mask, mask, current));
     }
-    let own = regions[outermost..]
-        .iter()
-        .any(|r| r.mask == Some(current));
+    let own = regions[outermost..].iter().any(|r| r.mask == Some(current));
     if own {
         let nowhere = e.bool(false);
         e.push(Op::Copy(File::Mask, current, nowhere));
@@ -187,9 +185,7 @@ pub(super) fn is_written(module: &Module, handle: Handle<GlobalVariable>) -> boo
 }
 
 fn writes(function: &Function, block: &Block, global: Handle<GlobalVariable>) -> bool {
-    let is = |pointer| {
-        matches!(root(function, pointer), Some(Expression::GlobalVariable(g)) if g == global)
-    };
+    let is = |pointer| matches!(root(function, pointer), Some(Expression::GlobalVariable(g)) if g == global);
     block.iter().any(|statement| match statement {
         Statement::Block(inner) => writes(function, inner, global),
         Statement::If { accept, reject, .. } => {

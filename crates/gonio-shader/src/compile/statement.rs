@@ -20,7 +20,10 @@ impl<'m> Compiler<'m> {
         let function = &self.module.functions[handle];
         if self.active.contains(&handle) {
             let name = function.name.as_deref().unwrap_or("a function");
-            return Err(Fault::new(span, format!("`{name}` calls itself: shaders have no recursion")));
+            return Err(Fault::new(
+                span,
+                format!("`{name}` calls itself: shaders have no recursion"),
+            ));
         }
         self.active.push(handle);
         self.calls += 1;
@@ -73,7 +76,12 @@ impl<'m> Compiler<'m> {
         stores: &Stores,
     ) -> Result<(), Fault> {
         for (handle, variable) in function.local_variables.iter() {
-            let kinds = self.layouts.of(variable.ty)?;
+            // A type's own place is that of its first use in the file, if any.
+            let span = function.local_variables.get_span(handle);
+            let kinds = self
+                .layouts
+                .of(variable.ty)
+                .map_err(|fault| Fault { span, ..fault })?;
             let k = handle.index();
             let init: Value = match variable.init {
                 Some(init) => self.value(frame, init)?,
@@ -94,7 +102,7 @@ impl<'m> Compiler<'m> {
                 once: stores.count[k] <= 1,
                 bound: simple.then_some(init),
             })));
-            self.check_size(function.local_variables.get_span(handle))?;
+            self.check_size(span)?;
         }
         Ok(())
     }
@@ -109,6 +117,10 @@ impl<'m> Compiler<'m> {
 
     fn block(&mut self, frame: &mut Frame<'m>, block: &'m Block) -> Result<(), Fault> {
         for (statement, &span) in block.span_iter() {
+            if span.is_defined() {
+                self.near = span;
+            }
+            let span = self.near;
             self.check_size(span)?;
             match statement {
                 Statement::Emit(range) => {
@@ -175,7 +187,10 @@ impl<'m> Compiler<'m> {
                 Statement::ControlBarrier(_)
                 | Statement::MemoryBarrier(_)
                 | Statement::WorkGroupUniformLoad { .. } => {
-                    return Err(Fault::new(span, "barriers and work groups are not supported"));
+                    return Err(Fault::new(
+                        span,
+                        "barriers and work groups are not supported",
+                    ));
                 }
                 Statement::ImageStore { .. } | Statement::ImageAtomic { .. } => {
                     return Err(Fault::new(span, "textures are not supported"));
@@ -386,7 +401,8 @@ impl<'m> Compiler<'m> {
         self.regions.push(region);
         let start = self.e.ops.len() as u32;
         let inside = self.own_mask();
-        self.regions.push(Region::new(RegionKind::Body, Some(inside)));
+        self.regions
+            .push(Region::new(RegionKind::Body, Some(inside)));
         self.block(frame, body)?;
         self.end_region();
         self.block(frame, continuing)?;
@@ -416,6 +432,9 @@ impl<'m> Compiler<'m> {
         handle: Handle<Expression>,
     ) -> Result<Slot, Fault> {
         let value = self.value(frame, handle)?;
-        Ok(value.first().copied().unwrap_or_else(|| self.e.zero(Kind::Real)))
+        Ok(value
+            .first()
+            .copied()
+            .unwrap_or_else(|| self.e.zero(Kind::Real)))
     }
 }
