@@ -27,8 +27,8 @@ fn each_mistake_has_its_place() {
         ("@group(0) @binding(0) var t: texture_2d<f32>;\n@group(0) @binding(1) var s: sampler;\nfn eval(wi: vec3f, wo: vec3f) -> vec3f { return textureSampleLevel(t, s, wi.xy, 0.0).xyz; }".into(), "a.wgsl:3:49: textures are not supported"),
         (format!("{eval} {{\n  return dpdx(wi);\n}}"), "a.wgsl:2:10: derivatives (dpdx, dFdx, fwidth, …) need neighbouring pixels: they are not supported"),
         (format!("{eval} {{\n  var a: array<f32, 1000000>;\n  a[1] = 1.0;\n  return wi * a[2];\n}}"), "a.wgsl:2:3: an array of 1000000 elements is too large: a shader may have at most 131072 numbers"),
-        (format!("override r: f32 = 2.0; // 0..1 rough\n{eval} {{ return wi * r; }}"), "a.wgsl:1:10: parameter `r` is 2 when not given, outside its range 0..1"),
-        (format!("override r: f32 = 2.0; // 3..1 rough\n{eval} {{ return wi * r; }}"), "a.wgsl:1:10: parameter `r`: found the range `3..1`, expected the smaller end first"),
+        (format!("override r: f32 = 2.0; // 0..1 rough\n{eval} {{ return wi * r; }}"), "a.wgsl:1:1: parameter `r` is 2 when not given, outside its range 0..1"),
+        (format!("override r: f32 = 2.0; // 3..1 rough\n{eval} {{ return wi * r; }}"), "a.wgsl:1:1: parameter `r`: found the range `3..1`, expected the smaller end first"),
     ] {
         let found = error("a.wgsl", &text);
         assert!(found.starts_with(expected), "{text}\n{found}\n{expected}");
