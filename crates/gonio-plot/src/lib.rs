@@ -1,0 +1,43 @@
+//! Plots of reflection functions: closures in, SVG and PNG out. It knows no BRDF, so it draws anybody's.
+//!
+//! A [`Function`] is f(ωi→ωr) as a closure, [`Options`] say what is shown, and each kind of plot is a function that returns a
+//! [`Figure`], which is an SVG text and can be turned into PNG:
+//!
+//! | plot | shows |
+//! |---|---|
+//! | [`polar()`] | the lobes in the plane of incidence |
+//! | [`cartesian()`] | the value against the angle of reflection |
+//! | [`albedo()`] | the directional albedo against the angle of incidence |
+//!
+//! The same functions and options give the same bytes on every machine.
+
+mod albedo;
+mod canvas;
+mod cartesian;
+mod chart;
+mod curves;
+mod error;
+mod figure;
+mod font;
+mod function;
+mod integral;
+mod options;
+mod page;
+mod png;
+mod polar;
+mod scale;
+mod trace;
+
+pub use albedo::albedo;
+pub use cartesian::cartesian;
+pub use error::PlotError;
+pub use figure::Figure;
+pub use function::{Draw, Function};
+pub use options::{Channel, MOST_ANGLES, MOST_FUNCTIONS, Options};
+pub use png::MOST_PIXELS;
+pub use polar::polar;
+pub use scale::ScaleKind;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
