@@ -10,7 +10,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// temporary file is removed, and what stood at `path` stays as it was.
 ///
 /// A path that exists and is no ordinary file (a pipe, a device) is written to directly: renaming would replace it.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
+///
+/// # Errors
+/// [`ImageError::Io`] with what could not be done.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
     let special = std::fs::metadata(path).is_ok_and(|m| !m.is_file());
     if special {
         return OpenOptions::new()

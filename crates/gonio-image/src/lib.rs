@@ -51,6 +51,7 @@ mod scan;
 pub mod srgb;
 pub mod tonemap;
 
+pub use atomic::write as write_file;
 pub use error::ImageError;
 pub use exr::prelude::f16;
 pub use format::FileFormat;

@@ -25,7 +25,7 @@ pub fn cartesian(functions: &[Function], options: &Options) -> Result<Figure, Pl
     let thetas = options.thetas(usual);
     let several = options.channel == Channel::Rgb && functions.len() > 1;
     let size = options.page_size(if several {
-        [1000.0, 760.0]
+        figure::page_of_panels(functions.len(), 1.5)
     } else {
         [860.0, 500.0]
     });
@@ -102,7 +102,11 @@ fn panel(
         step: if wide && end < 100.0 { 15.0 } else { 30.0 },
         fine: if wide && end < 100.0 { 5.0 } else { 15.0 },
     };
-    let mut y_words = format!("{} in sr⁻¹", options.quantity());
+    let mut y_words = if curves.any() {
+        format!("{} in sr⁻¹", options.quantity())
+    } else {
+        "share of the light".to_owned()
+    };
     if options.channel != Channel::Rgb {
         y_words += &format!(", {}", options.channel.name());
     }
@@ -133,27 +137,60 @@ fn panel(
         }
         for (stroke, weights) in &curve.strokes {
             for line in curve.trace.lines(*weights, &at) {
-                // What lies under the axis is not drawn as if it were on it.
-                for piece in line.split(|p| p[1] >= bottom - 1e-9 && curves.scale.low > 0.0) {
-                    if piece.len() > 1 {
-                        canvas.line(piece, *stroke);
-                    }
+                for piece in above_the_axis(&line, bottom) {
+                    canvas.line(piece, *stroke);
                 }
             }
         }
     }
-    for curve in curves.all.iter().filter(|c| chosen(c)) {
-        for (t, share) in &curve.spikes {
-            let colour = match options.channel {
-                Channel::Rgb => INK,
-                _ => curve.strokes[0].0.colour,
-            };
-            let tip = top + 0.16 * h;
-            let stroke = Stroke::new(colour, 2.4);
-            canvas.arrow([across(*t), bottom], [across(*t), tip], 12.0, stroke);
-            let look = Look::LABEL.centred().rimmed().bold().coloured(colour);
-            let words = number(options.channel.value(*share));
-            canvas.text(&words, [across(*t), tip - 10.0], look);
+    let mut spikes: Vec<_> = curves
+        .all
+        .iter()
+        .filter(|c| chosen(c))
+        .flat_map(|c| c.spikes.iter().map(move |spike| (c, *spike)))
+        .collect();
+    spikes.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
+    for (k, (curve, (t, share))) in spikes.into_iter().enumerate() {
+        let colour = match options.channel {
+            Channel::Rgb => INK,
+            _ => curve.strokes[0].0.colour,
+        };
+        let share = options.channel.value(share);
+        // Beside curves an arrow's height means nothing, so labels take turns.
+        let tip = if curves.any() {
+            top + h * (0.12 + 0.07 * (k % 3) as f64)
+        } else {
+            bottom - h * curves.scale.position(share)
+        };
+        let stroke = Stroke::new(colour, 2.4);
+        canvas.arrow([across(t), bottom], [across(t), tip], 12.0, stroke);
+        let look = Look::LABEL.centred().rimmed().bold().coloured(colour);
+        canvas.text(
+            &number(share),
+            [across(t), (tip - 10.0).max(top + 8.0)],
+            look,
+        );
+    }
+}
+
+/// The pieces of a line that are above the axis, with the points where they come from it and go back: what lies under a logarithmic axis is
+/// not drawn as if it were on it.
+fn above_the_axis(line: &[[f64; 2]], bottom: f64) -> Vec<&[[f64; 2]]> {
+    let above = |p: &[f64; 2]| p[1] < bottom - 1e-9;
+    let mut pieces = Vec::new();
+    let mut first = None;
+    for k in 0..line.len() {
+        match (above(&line[k]), first) {
+            (true, None) => first = Some(k.saturating_sub(1)),
+            (false, Some(from)) => {
+                pieces.push(&line[from..=k]);
+                first = None;
+            }
+            _ => {}
         }
     }
+    if let Some(from) = first {
+        pieces.push(&line[from..]);
+    }
+    pieces
 }

@@ -176,6 +176,22 @@ pub(crate) fn legend(canvas: &Canvas, [x, y]: [f64; 2], width: f64, entries: &[E
     }
 }
 
+/// The size of a page for `count` panels whose widths are `aspect` times their heights.
+pub(crate) fn page_of_panels(count: usize, aspect: f64) -> [f64; 2] {
+    let columns = match count {
+        1 => 1,
+        2 | 4 => 2,
+        3 | 5 | 6 => 3,
+        _ => 4,
+    };
+    let wide = if columns == 4 { 280.0 } else { 340.0 };
+    let rows = count.div_ceil(columns);
+    [
+        columns as f64 * (wide + 14.0) + 180.0,
+        rows as f64 * (wide / aspect + 34.0) + 90.0,
+    ]
+}
+
 /// Rectangles for `count` panels in `place`, as square as they can be, row by row.
 pub(crate) fn panels(place: Place, count: usize, aspect: f64, gap: f64) -> Vec<Place> {
     let [x, y, w, h] = place;

@@ -20,19 +20,22 @@ pub(crate) struct Albedo {
 
 /// The quadrature ends at this difference between two steps: less than a curve's width in a chart of albedos.
 const TOLERANCE: f64 = 2e-4;
-/// Doublings of the nodes at most.
-const STEPS: u32 = 4;
-/// The width down to which a lobe is resolved, radians: below that of the sharpest, α = 1e-4.
-const FINEST: f64 = 1e-4;
+/// Nodes in each piece along each angle, step by step.
+const NODES: [usize; 4] = [3, 5, 8, 12];
+/// The narrowest pieces, radians: along θ half as wide as the sharpest lobes (α = 1e-4), along φ by as much narrower as such a lobe is across the
+/// plane of incidence for a viewer at 89.5°.
+const FINEST: [f64; 2] = [5e-5, 1e-6];
+/// How much wider the next piece is.
+const GROWTH: f64 = 2.5;
 
 /// a(ωo) = ∫ f(ωi→ωo) n(ωi)²/n(ωo)² |cosθi| dωi, over the hemisphere or, for what transmits, over the sphere.
 ///
-/// The integral is split among the directions where a narrow lobe may stand, by weights 1/distance⁴ that add up to 1 and are 0 at all
-/// others; each part is taken in polar coordinates around its own, with nodes at distances from it that grow geometrically.
+/// Gauss–Legendre rules in θi and φi over pieces that grow geometrically from the angles at which a narrow lobe may stand. As a lobe's axes lie
+/// along the two angles, so do the pieces, however grazing light stretches it.
 pub(crate) fn albedo(f: &Function, wo: Vec3<f64>) -> Albedo {
-    let mut last = quadrature(f, wo, 0);
-    for step in 1..=STEPS {
-        let mut next = quadrature(f, wo, step);
+    let mut last = quadrature(f, wo, NODES[0]);
+    for nodes in &NODES[1..] {
+        let mut next = quadrature(f, wo, *nodes);
         let apart = |k: usize| (next.total[k] - last.total[k]).abs();
         next.error = apart(0).max(apart(1)).max(apart(2));
         last = next;
@@ -54,36 +57,37 @@ pub(crate) fn albedo(f: &Function, wo: Vec3<f64>) -> Albedo {
     last
 }
 
-fn quadrature(f: &Function, wo: Vec3<f64>, step: u32) -> Albedo {
-    let centres = f.lobes(wo);
-    let rings = GaussLegendre::new(12 << step);
-    let spokes = 16_u32 << step;
+fn quadrature(f: &Function, wo: Vec3<f64>, nodes: usize) -> Albedo {
+    let rule = GaussLegendre::new(nodes);
+    let lobes = f.lobes(wo);
+    let theta = |w: &Vec3<f64>| Real::atan2((w.x * w.x + w.y * w.y).sqrt(), w.z);
+    let phi = Real::atan2(wo.y, wo.x);
+    let azimuths = nodes_of(
+        &rule,
+        phi,
+        phi + TAU,
+        &[phi, phi + PI, phi + TAU],
+        FINEST[1],
+    );
     let mut pairs = Vec::new();
     let mut weights = Vec::new();
-    for (own, &centre) in centres.iter().enumerate() {
-        let (across, along) = around(centre);
-        for k in 0..spokes {
-            let (sin_b, cos_b) = Real::sin_cos(TAU * (f64::from(k) + 0.5) / f64::from(spokes));
-            let outwards = across * cos_b + along * sin_b;
-            let mut node = |alpha: f64, weight: f64| {
-                let (sin, cos) = Real::sin_cos(alpha);
-                let wi = centre * cos + outwards * sin;
-                let area = weight * sin * TAU / f64::from(spokes);
-                pairs.push([wi, wo]);
-                weights.push(area * share(&centres, own, wi) * wi.z.abs());
-            };
-            // The nodes end at the horizon, where |cosθ| has a kink: z = centre.z cosα + outwards.z sinα = 0.
-            let up = if centre.z < 0.0 { -1.0 } else { 1.0 };
-            let horizon = Real::atan2(up * centre.z, -up * outwards.z);
-            let stretch = Real::ln(1.0 + horizon / FINEST);
-            for (s, weight) in rings.on(0.0, 1.0) {
-                let from = FINEST * Real::exp(s * stretch);
-                node(from - FINEST, weight * stretch * from);
-            }
-            if f.transmits() {
-                for (alpha, weight) in rings.on(horizon, PI) {
-                    node(alpha, weight);
-                }
+    for above in [true, false] {
+        if !above && !f.transmits() {
+            continue;
+        }
+        let (from, to) = if above {
+            (0.0, 0.5 * PI)
+        } else {
+            (0.5 * PI, PI)
+        };
+        let here = lobes.iter().filter(|w| (w.z > 0.0) == above);
+        let centres: Vec<f64> = here.map(theta).collect();
+        for (theta, w_theta) in nodes_of(&rule, from, to, &centres, FINEST[0]) {
+            let (sin, cos) = Real::sin_cos(theta);
+            for &(phi, w_phi) in &azimuths {
+                let (sin_phi, cos_phi) = Real::sin_cos(phi);
+                pairs.push([Vec3::new(sin * cos_phi, sin * sin_phi, cos), wo]);
+                weights.push(w_theta * w_phi * sin * cos.abs());
             }
         }
     }
@@ -106,25 +110,38 @@ fn quadrature(f: &Function, wo: Vec3<f64>, step: u32) -> Albedo {
     sum
 }
 
-/// The share of the direction `w` that belongs to the centre `own`.
-fn share(centres: &[Vec3<f64>], own: usize, w: Vec3<f64>) -> f64 {
-    let inverse = |c: &Vec3<f64>| {
-        let d = (*c - w).length_squared().max(1e-18);
-        1.0 / (d * d)
-    };
-    let all: f64 = centres.iter().map(inverse).sum();
-    inverse(&centres[own]) / all
-}
-
-/// Two unit vectors at right angles to `w` and to each other.
-pub(crate) fn around(w: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>) {
-    let other = if w.z.abs() < 0.9 {
-        Vec3::new(0.0, 0.0, 1.0)
-    } else {
-        Vec3::new(1.0, 0.0, 0.0)
-    };
-    let a = w.cross(other).normalize();
-    (a, w.cross(a))
+/// Nodes and weights from `low` to `high`, on pieces that are `finest` at each of the centres and grow from there.
+fn nodes_of(
+    rule: &GaussLegendre,
+    low: f64,
+    high: f64,
+    centres: &[f64],
+    finest: f64,
+) -> Vec<(f64, f64)> {
+    let mut edges = vec![low, high];
+    edges.extend(centres);
+    edges.retain(|t| (low..=high).contains(t));
+    edges.sort_by(f64::total_cmp);
+    edges.dedup_by(|b, a| *b - *a < finest);
+    let mut all = edges.clone();
+    for pair in edges.windows(2) {
+        // From both ends to the middle; from an end of the range that is no centre nothing grows.
+        let half = 0.5 * (pair[1] - pair[0]);
+        let centre = |t: f64| centres.iter().any(|c| (c - t).abs() < finest);
+        let reach = |other: f64| if centre(other) { half } else { 2.0 * half };
+        let mut offset = finest;
+        while offset < 2.0 * half / GROWTH {
+            if centre(pair[0]) && offset < reach(pair[1]) {
+                all.push(pair[0] + offset);
+            }
+            if centre(pair[1]) && offset < reach(pair[0]) {
+                all.push(pair[1] - offset);
+            }
+            offset *= GROWTH;
+        }
+    }
+    all.sort_by(f64::total_cmp);
+    all.windows(2).flat_map(|w| rule.on(w[0], w[1])).collect()
 }
 
 #[cfg(test)]

@@ -35,7 +35,7 @@ pub fn polar(functions: &[Function], options: &Options) -> Result<Figure, PlotEr
     let transmits = functions.iter().any(Function::transmits) || thetas.iter().any(|t| *t > 90.0);
     let several = options.channel == Channel::Rgb && functions.len() > 1;
     let size = options.page_size(match (several, transmits) {
-        (true, _) => [1000.0, 760.0],
+        (true, below) => figure::page_of_panels(functions.len(), if below { 1.0 } else { 1.7 }),
         (_, true) => [820.0, 660.0],
         _ => [820.0, 470.0],
     });
@@ -260,7 +260,7 @@ impl Round<'_> {
                     line.push(self.centre);
                 }
                 if filled {
-                    self.canvas.area(&line, stroke.colour, 0.08);
+                    self.canvas.area(&line, stroke.colour, 0.06);
                 }
                 self.canvas.line(&line, *stroke);
             }

@@ -13,7 +13,7 @@ pub enum ScaleKind {
     Linear,
     /// As the cube root, which shows weak lobes beside strong ones and still ends at 0.
     CubeRoot,
-    /// As the logarithm, six decades at most.
+    /// As the logarithm, ten decades at most.
     Log,
 }
 
@@ -41,7 +41,7 @@ impl std::str::FromStr for ScaleKind {
 }
 
 /// Decades that a logarithmic axis has at most.
-const DECADES: i32 = 6;
+const DECADES: i32 = 10;
 
 /// An axis from 0 (or from a power of ten) to a round number.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -132,7 +132,7 @@ impl Scale {
                 for e in first..=last {
                     let decade = power_of_ten(e);
                     values.push((decade, true));
-                    if e < last {
+                    if e < last && last - first <= 6 {
                         values.extend((2..10).map(|k| (decade * f64::from(k), false)));
                     }
                 }
@@ -255,7 +255,7 @@ mod tests {
         let log = Scale::new(ScaleKind::Log, 3e-3, 250.0, false);
         assert_eq!((log.low, log.high), (1e-3, 1e3));
         let log = Scale::new(ScaleKind::Log, 1e-30, 1000.0, false);
-        assert_eq!((log.low, log.high), (1e-3, 1e3));
+        assert_eq!((log.low, log.high), (1e-7, 1e3));
         // All of one value, nothing at all.
         assert_eq!(Scale::new(ScaleKind::Log, 1.0, 1.0, false).high, 1.0);
         assert_eq!(Scale::new(ScaleKind::Auto, 0.0, 0.0, false).high, 1.0);
@@ -293,7 +293,7 @@ mod tests {
                 assert!((ticks.last().unwrap().position - 1.0).abs() < 1e-12);
                 assert!(ticks.windows(2).all(|w| w[0].position < w[1].position));
                 let labels = ticks.iter().filter(|t| !t.label.is_empty()).count();
-                assert!((2..=8).contains(&labels), "{kind:?} {most}: {labels}");
+                assert!((2..=11).contains(&labels), "{kind:?} {most}: {labels}");
             }
         }
     }

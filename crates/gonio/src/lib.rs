@@ -10,6 +10,7 @@
 //! | [`radiometry`] | quantities and units, spectra and colour, directions, solid angles, sampling |
 //! | [`image`] | pictures of light: files, tone mapping, differences |
 //! | [`verify`] | evidence: is this reflection function physical? |
+//! | [`plot`] | pictures of reflection functions |
 //! | [`brdf`] | reflection functions and their registry |
 //! | [`env`](mod@env) | environment maps |
 //! | [`scene`] | shapes, materials, lights, cameras, and readers |
@@ -94,6 +95,7 @@ pub use gonio_brdf as brdf;
 pub use gonio_env as env;
 pub use gonio_image as image;
 pub use gonio_num as num;
+pub use gonio_plot as plot;
 pub use gonio_radiometry as radiometry;
 pub use gonio_render as render;
 pub use gonio_scene as scene;

@@ -18,22 +18,48 @@ pub(super) fn extension(path: &Path) -> String {
 
 /// Fails unless `path` has a picture's extension and lies in a folder that takes new files.
 pub(super) fn check(path: &Path) -> Result<(), Failure> {
+    check_extension(path, &EXTENSIONS, "pictures")?;
+    writable(path)
+}
+
+/// Fails unless the extension of `path` is one of those that `things` can be written with.
+pub(super) fn check_extension(
+    path: &Path,
+    extensions: &[&str],
+    things: &str,
+) -> Result<(), Failure> {
     let extension = extension(path);
-    if !EXTENSIONS.contains(&extension.as_str()) {
-        let message = match extension.as_str() {
-            "" => format!(
-                "{}: the name has no extension to tell the format by",
-                path.display()
-            ),
-            other => format!("{}: pictures can't be written as .{other}", path.display()),
-        };
-        return Err(
-            Failure::usage(message).with_help(match nearest(&extension, EXTENSIONS) {
-                Some(near) => format!("did you mean .{near}? Pictures are .exr, .hdr or .png"),
-                None => "pictures are .exr, .hdr or .png".into(),
-            }),
-        );
+    if extensions.contains(&extension.as_str()) {
+        return Ok(());
     }
+    let message = match extension.as_str() {
+        "" => format!(
+            "{}: the name has no extension to tell the format by",
+            path.display()
+        ),
+        other => format!("{}: {things} can't be written as .{other}", path.display()),
+    };
+    let listed = match extensions {
+        [others @ .., last] if !others.is_empty() => format!(".{} or .{last}", others.join(", .")),
+        all => all.iter().map(|e| format!(".{e}")).collect(),
+    };
+    Err(
+        Failure::usage(message).with_help(match nearest(&extension, extensions) {
+            Some(near) => format!("did you mean .{near}? {} are {listed}", capitalised(things)),
+            None => format!("{things} are {listed}"),
+        }),
+    )
+}
+
+fn capitalised(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or(String::new(), |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
+}
+
+/// Fails unless `path` can be a file's, in a folder that takes new files.
+pub(super) fn writable(path: &Path) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::input(format!(
             "{}: this is a folder, expected the name of a file",

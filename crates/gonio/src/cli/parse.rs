@@ -17,6 +17,16 @@ pub(crate) fn tone_map() -> impl TypedValueParser<Value = ToneMap> {
     .try_map(|name| name.parse::<ToneMap>())
 }
 
+/// One of some words, each with its value.
+pub(crate) fn words<T: Copy + Send + Sync + 'static>(
+    all: &'static [(T, &'static str)],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(all.iter().map(|(_, name)| *name)).try_map(|given| {
+        let found = all.iter().find(|(_, name)| *name == given);
+        found.map(|(value, _)| *value).ok_or("unknown word")
+    })
+}
+
 /// The name of a pixel filter.
 pub(crate) fn pixel_filter() -> impl TypedValueParser<Value = PixelFilter> {
     PossibleValuesParser::new(["box", "tent", "blackman-harris"])

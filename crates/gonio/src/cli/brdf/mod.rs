@@ -3,6 +3,7 @@
 pub(in crate::cli) mod check;
 mod convert;
 mod info;
+mod plot;
 
 use super::failure::Failure;
 use super::parse::{self, Angles};
@@ -66,6 +67,9 @@ pub(super) enum Command {
     /// Is it physical? Reciprocity, energy, isotropy, sampling, each with a bound and a witness
     #[command(after_help = check::HELP)]
     Check(check::Arguments),
+    /// A picture of one function or of several: lobes, curves, slices, albedo
+    #[command(after_help = plot::HELP)]
+    Plot(Box<plot::Arguments>),
 }
 
 pub(super) fn run(command: Command) -> Result<(), Failure> {
@@ -83,6 +87,7 @@ pub(super) fn run(command: Command) -> Result<(), Failure> {
         Command::Info { file, json } => info::run(&file, json),
         Command::Convert(arguments) => convert::run(*arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Plot(arguments) => plot::run(*arguments),
     }
 }
 

@@ -1,0 +1,208 @@
+//! `gonio brdf plot`.
+
+use crate::cli::destination;
+use crate::cli::failure::Failure;
+use crate::cli::parse;
+use crate::cli::terminal::warn;
+use gonio_brdf::measured::format::FORMATS;
+use gonio_brdf::{Brdf, Model, ModelSpec};
+use gonio_plot::{Channel, Draw, Figure, Function, MOST_FUNCTIONS, Options, PlotError, ScaleKind};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+pub(super) const HELP: &str = "Examples:\n  gonio brdf plot ggx:metal=gold,roughness=0.3 -o gold.svg\n  \
+    gonio brdf plot oren-nayar lambertian --kind cartesian --theta 60 -o rough.svg\n  \
+    gonio brdf plot disney openpbr gltf --kind albedo -o albedo.png\n\n\
+    Light comes from the left, at each --theta from the normal. An SVG describes what it shows in words, too.";
+
+/// The extensions of plots.
+const EXTENSIONS: [&str; 2] = ["svg", "png"];
+
+#[derive(clap::Args)]
+pub(in crate::cli) struct Arguments {
+    /// Up to eight functions: NAME, NAME:key=value,…, or a measured file
+    #[arg(required = true, value_name = "FUNCTION")]
+    functions: Vec<String>,
+    /// What is shown
+    #[arg(long, value_enum, default_value_t = Kind::Polar)]
+    kind: Kind,
+    /// The file to write: .svg or .png
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Angles of incidence in degrees, as in 0,30,60 [default: what suits the kind]
+    #[arg(long, value_name = "DEG,…", value_delimiter = ',', value_parser = number, allow_hyphen_values = true)]
+    theta: Vec<f64>,
+    /// Azimuth of the plane of incidence in degrees, for what isn't isotropic
+    #[arg(long, value_name = "DEG", default_value = "0", value_parser = number, allow_hyphen_values = true)]
+    phi: f64,
+    /// Which number a colour becomes: luminance, red, green, blue, or rgb for all three
+    #[arg(long, value_name = "CHANNEL", default_value = "luminance", value_parser = parse::words(&Channel::ALL))]
+    channel: Channel,
+    /// How a value becomes a length or a colour: auto, linear, cube-root or log
+    #[arg(long, value_name = "SCALE", default_value = "auto", value_parser = parse::words(&ScaleKind::ALL))]
+    scale: ScaleKind,
+    /// Multiply f by |cos θr|: the shape of the reflected intensity
+    #[arg(long)]
+    cosine: bool,
+    /// Width and height in pixels [default: what suits the kind]
+    #[arg(long, value_name = "WxH", value_parser = parse::size)]
+    size: Option<[u32; 2]>,
+    /// Pixels of a PNG for each one of --size
+    #[arg(long, value_name = "N", default_value = "2", value_parser = parse::whole(1_u32, 8))]
+    density: u32,
+    /// The words at the top [default: the function's name]
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+}
+
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Kind {
+    /// The lobes in the plane of incidence
+    Polar,
+    /// f against the angle of reflection
+    Cartesian,
+    /// The fraction of light that leaves again, against the angle
+    Albedo,
+}
+
+/// A finite number.
+fn number(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>().ok().filter(|n| n.is_finite());
+    number.ok_or_else(|| "expected a finite number".into())
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<(), Failure> {
+    // Before any time is spent.
+    destination::check_extension(&arguments.output, &EXTENSIONS, "plots")?;
+    destination::writable(&arguments.output)?;
+    let count = arguments.functions.len();
+    if count > MOST_FUNCTIONS {
+        let message = format!("{count} functions were given, expected at most {MOST_FUNCTIONS}");
+        return Err(Failure::usage(message).with_help("draw them in several plots"));
+    }
+    let subjects: Vec<Subject> = arguments
+        .functions
+        .iter()
+        .map(|text| Subject::open(text))
+        .collect::<Result<_, _>>()?;
+    let functions: Vec<Function> = subjects.iter().map(Subject::function).collect();
+    let options = Options {
+        size: arguments.size,
+        title: arguments.title.clone(),
+        theta_deg: arguments.theta.clone(),
+        phi_deg: arguments.phi,
+        channel: arguments.channel,
+        scale: arguments.scale,
+        cosine: arguments.cosine,
+        ..Options::default()
+    };
+    let spinner = spinner();
+    let figure = match arguments.kind {
+        Kind::Polar => gonio_plot::polar(&functions, &options),
+        Kind::Cartesian => gonio_plot::cartesian(&functions, &options),
+        Kind::Albedo => gonio_plot::albedo(&functions, &options),
+    };
+    let written = figure
+        .map_err(Failure::from)
+        .and_then(|figure| write(&figure, &arguments));
+    spinner.finish_and_clear();
+    written
+}
+
+fn write(figure: &Figure, arguments: &Arguments) -> Result<(), Failure> {
+    let png;
+    let bytes = if destination::extension(&arguments.output) == "png" {
+        png = figure.png(f64::from(arguments.density))?;
+        &png
+    } else {
+        figure.svg().as_bytes()
+    };
+    gonio_image::write_file(&arguments.output, bytes)?;
+    for note in figure.notes() {
+        warn(note);
+    }
+    Ok(())
+}
+
+/// A sign of life on standard error, when that is a terminal and the work takes a second.
+fn spinner() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    if let Ok(style) = ProgressStyle::with_template("{spinner:.cyan} drawing, {elapsed}") {
+        bar.set_style(style);
+    }
+    let started = bar.downgrade();
+    std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_secs(1));
+        if let Some(bar) = started.upgrade()
+            && !bar.is_finished()
+        {
+            bar.enable_steady_tick(Duration::from_millis(100));
+        }
+    });
+    bar
+}
+
+/// A function by its description.
+struct Subject {
+    name: String,
+    model: Model<f64, 3>,
+    relative_ior: Option<[f64; 3]>,
+}
+
+impl Subject {
+    /// The measured file `text`, if there is one of that name, or else the model that it describes.
+    fn open(text: &str) -> Result<Self, Failure> {
+        let path = Path::new(text);
+        let extension = destination::extension(path);
+        let measured = FORMATS.iter().any(|f| f.extension == extension);
+        let file = path.exists() || (measured && !text.contains(['(', '=']));
+        let spec = if file {
+            ModelSpec::from_pairs("table", [("file", text)])?
+        } else {
+            ModelSpec::parse(text)?
+        };
+        let model: Model<f64, 3> = spec.build()?;
+        for line in model.warnings() {
+            warn(&format!("{text}: {line}"));
+        }
+        let name = match path.file_name() {
+            Some(name) if file => name.to_string_lossy().into_owned(),
+            _ => text.trim().into(),
+        };
+        Ok(Self {
+            name,
+            model,
+            relative_ior: spec.declares()?.relative_ior,
+        })
+    }
+
+    fn function(&self) -> Function<'_> {
+        let model = &self.model;
+        let function =
+            Function::new(&self.name, |wi, wo| model.eval(wi, wo)).with_discrete(|wo, u| {
+                let s = model.sample(wo, u);
+                (s.pdf > 0.0 && s.delta).then_some(Draw {
+                    wi: s.wi,
+                    weight: s.weight,
+                    probability: s.pdf,
+                })
+            });
+        match self.relative_ior {
+            Some(ior) => function.transmitting(ior),
+            None => function,
+        }
+    }
+}
+
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        let help = match &error {
+            PlotError::Count { .. } => "--help says what each kind shows",
+            PlotError::Option { .. } => "--help explains each option",
+            PlotError::Nothing { .. } => "choose another --kind",
+            PlotError::Drawing(_) => "write an .svg, or choose a smaller --size or --density",
+        };
+        Self::usage(error.to_string()).with_help(help)
+    }
+}
