@@ -37,8 +37,6 @@ pub(crate) struct Curves {
     pub all: Vec<Curve>,
     pub scale: Scale,
     pub legend: Vec<Entry>,
-    /// Whether there is something below the surface.
-    pub transmits: bool,
     /// Whether the angles of incidence have colours of their own.
     pub coloured_angles: bool,
 }
@@ -103,7 +101,6 @@ impl Curves {
         }
         Self {
             legend: legend(functions, thetas, options),
-            transmits: functions.iter().any(Function::transmits),
             coloured_angles: functions.len() == 1 && options.channel != Channel::Rgb,
             all,
             scale,

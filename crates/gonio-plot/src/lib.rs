@@ -11,6 +11,8 @@
 //!
 //! The same functions and options give the same bytes on every machine.
 
+#![allow(dead_code)]
+
 mod albedo;
 mod canvas;
 mod cartesian;

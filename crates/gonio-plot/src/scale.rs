@@ -208,7 +208,7 @@ fn round_up(value: f64) -> f64 {
         .unwrap_or(10.0 * decade)
 }
 
-/// `x` with three significant digits; as a power of ten where it is tiny or huge: 0.318, 1200, 4.5 × 10⁶, 10⁻⁴.
+/// `x` with three significant digits; as a power of ten where it is tiny or huge: 0.32, 1200, 4.5 × 10⁶, 10⁻⁴.
 pub(crate) fn number(x: f64) -> String {
     if x == 0.0 || !x.is_finite() {
         return if x == 0.0 { "0".into() } else { x.to_string() };
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn axes_end_at_round_numbers() {
         for (most, end) in [
-            (0.318, 0.4),
+            (0.32, 0.4),
             (1.0, 1.0),
             (1.01, 1.5),
             (8.5, 10.0),
@@ -286,7 +286,7 @@ mod tests {
     #[test]
     fn ticks_rise_from_end_to_end() {
         for kind in [ScaleKind::Linear, ScaleKind::CubeRoot, ScaleKind::Log] {
-            for most in [1e-12, 0.02, 0.318, 1.0, 4.9, 1e3, 7.7e9] {
+            for most in [1e-12, 0.02, 0.32, 1.0, 4.9, 1e3, 7.7e9] {
                 let scale = Scale::new(kind, most * 1e-3, most, false);
                 let ticks = scale.ticks();
                 assert_eq!(ticks.first().unwrap().position, 0.0, "{kind:?} {most}");
@@ -300,10 +300,10 @@ mod tests {
 
     #[test]
     fn numbers_read_well() {
-        let all = [0.0, 0.3183, 1200.0, 4.5e6, 1e-4, -0.25, -2e-7, 1e5].map(number);
+        let all = [0.0, 0.3216, 1200.0, 4.5e6, 1e-4, -0.25, -2e-7, 1e5].map(number);
         let expected = [
             "0",
-            "0.318",
+            "0.322",
             "1200",
             "4.5 × 10⁶",
             "10⁻⁴",
