@@ -4,13 +4,15 @@
     gonio brdf check --exec 'python3 bsdf.py roughplastic alpha=0.3 distribution=ggx'
 
 The first word is the plugin, the others are its parameters: numbers, words, `true` and `false`, and colours as r/g/b.
-Needs `pip install mitsuba numpy`; tried with Mitsuba 3.9.1. `--variant` chooses another variant than llvm_ad_rgb.
+Needs `pip install mitsuba numpy`; tried with Mitsuba 3.9.1. `--variant scalar_rgb` asks the scalar code, some ten times slower.
 
 What is bridged:
 
 - Mitsuba's wi is the viewer and its wo the light: the other way round here.
 - Its eval has the cosine of the light's direction. It is divided by that here, and taken as 0 where the cosine is 0.
-- Its random numbers: sample1 chooses among lobes (our third number), sample2 places the direction.
+- Of its random numbers sample1 chooses among lobes (here the third number), and sample2 places the direction.
+- A sample of weight 0 is none: Mitsuba's integrators end the path there, and its own χ² test leaves such samples out.
+- An anisotropic one (alpha_u and alpha_v, `anisotropic`) says so.
 """
 
 import argparse
@@ -19,8 +21,6 @@ import sys
 
 import mitsuba as mi
 import numpy as np
-
-COUNT_BYTES = 12
 
 
 def value(text):
@@ -34,67 +34,86 @@ def value(text):
 
 
 parser = argparse.ArgumentParser()
-parser.add_argument("--variant", default="llvm_ad_rgb")
-parser.add_argument("--declare-not", action="append", default=[], choices=["reciprocal", "energy_conserving", "isotropic"])
+parser.add_argument("--variant", default="llvm_ad_rgb", help="llvm_ad_rgb or scalar_rgb")
 parser.add_argument("plugin")
-parser.add_argument("parameter", nargs="*")
+parser.add_argument("parameter", nargs="*", help="name=value")
 arguments = parser.parse_args()
 mi.set_variant(arguments.variant)
+scalar = arguments.variant.startswith("scalar")
 
 parameters = {key: value(text) for key, text in (word.split("=", 1) for word in arguments.parameter)}
 bsdf = mi.load_dict({"type": arguments.plugin, **parameters})
 context = mi.BSDFContext()
-single = "double" not in arguments.variant
-number = "<f4" if single else "<f8"
+
+
+def interaction(viewer):
+    """A point on a surface whose frame is the world's, seen from `viewer`."""
+    si = mi.SurfaceInteraction3f()
+    si.wi = viewer
+    si.n = mi.Normal3f(0, 0, 1)
+    si.sh_frame = mi.Frame3f(mi.Vector3f(0, 0, 1))
+    return si
 
 
 def vectors(rows):
     return mi.Vector3f(np.ascontiguousarray(rows.T))
 
 
-def interaction(viewer):
-    """A point on a surface whose frame is the world's, seen from `viewer`."""
-    si = mi.SurfaceInteraction3f()
-    si.wi = vectors(viewer)
-    si.n = mi.Normal3f(0, 0, 1)
-    si.sh_frame = mi.Frame3f(mi.Vector3f(0, 0, 1))
-    return si
-
-
 def columns(x, count):
-    """A Mitsuba array as rows of numpy, one for each of `count` entries; constants are repeated."""
-    x = np.asarray(x, dtype=number)
+    """An array of Mitsuba's as rows of numpy, one for each of `count` entries; what is the same for all is repeated."""
+    x = np.asarray(x, np.float32)
     rows = x.T if x.ndim == 2 else x.reshape(-1, 1)
     return np.broadcast_to(rows, (count, rows.shape[1]))
 
 
+def call_eval(light, viewer):
+    if scalar:
+        return np.array([bsdf.eval(context, interaction(v), mi.Vector3f(l)) for l, v in zip(light, viewer)])
+    return columns(bsdf.eval(context, interaction(vectors(viewer)), vectors(light)), len(light))
+
+
 def evaluate(light, viewer):
-    f = columns(bsdf.eval(context, interaction(viewer), vectors(light)), len(light))
     cos = np.abs(light[:, 2:])
-    return np.where(cos > 0, f / np.where(cos > 0, cos, 1), 0)
+    return np.where(cos > 0, call_eval(light, viewer) / np.where(cos > 0, cos, 1), 0)
 
 
 def density(light, viewer):
-    return columns(bsdf.pdf(context, interaction(viewer), vectors(light)), len(light))
+    if scalar:
+        return np.array([bsdf.pdf(context, interaction(v), mi.Vector3f(l)) for l, v in zip(light, viewer)])
+    return columns(bsdf.pdf(context, interaction(vectors(viewer)), vectors(light)), len(light))
+
+
+def row(viewer, u):
+    s, weight = bsdf.sample(context, interaction(viewer), float(u[2]), mi.Point2f(u[:2]))
+    return [*s.wo, *weight, s.pdf, mi.has_flag(s.sampled_type, mi.BSDFFlags.Delta)]
+
+
+def draw(viewer, u):
+    if scalar:
+        return np.array([row(mi.Vector3f(v), x) for v, x in zip(viewer, u)], float)
+    place = mi.Point2f(np.ascontiguousarray(u[:, :2].T))
+    s, weight = bsdf.sample(context, interaction(vectors(viewer)), mi.Float(np.ascontiguousarray(u[:, 2])), place)
+    delta = mi.has_flag(s.sampled_type, mi.BSDFFlags.Delta)
+    return np.column_stack([columns(x, len(viewer)) for x in (s.wo, weight, s.pdf, delta)])
 
 
 def sample(viewer, u):
-    place = mi.Point2f(np.ascontiguousarray(u[:, :2].T))
-    s, weight = bsdf.sample(context, interaction(viewer), mi.Float(np.ascontiguousarray(u[:, 2])), place)
-    n = len(viewer)
-    delta = columns(mi.has_flag(s.sampled_type, mi.BSDFFlags.Delta), n)
-    return np.column_stack([columns(s.wo, n), columns(weight, n), columns(s.pdf, n), delta])
+    drawn = draw(viewer, u)
+    drawn[np.all(drawn[:, 3:6] == 0, axis=1)] = 0
+    return drawn
 
 
 def relative_ior():
     """Index of refraction below the surface over the one above; None if nothing passes through."""
     if not mi.has_flag(bsdf.flags(), mi.BSDFFlags.Transmission):
         return None
-    if arguments.plugin == "thindielectric":
+    if "thin" in arguments.plugin:
         return 1.0
-    # Light straight through a smooth body of the same parameters tells it.
-    eta = mi.traverse(bsdf)["eta"]
-    return float(np.asarray(eta).ravel()[0])
+    if arguments.plugin == "principled":
+        # `eta`, if it is given; else that of `specular`, 0.5 unless given: ((η − 1)/(η + 1))² = 0.08 specular.
+        root = (0.08 * parameters.get("specular", 0.5)) ** 0.5
+        return parameters.get("eta", (1 + root) / (1 - root))
+    return float(np.asarray(mi.traverse(bsdf)["eta"]).ravel()[0])
 
 
 asked, answers = sys.stdin.buffer, sys.stdout.buffer
@@ -103,20 +122,20 @@ hello = {
     "id": 0,
     "name": f"mitsuba {arguments.plugin}",
     "offers": ["eval", "pdf", "sample"],
-    "batches": "float32" if single else "float64",
-    "parameters": {**{k: v["value"] if isinstance(v, dict) else v for k, v in parameters.items()}, "variant": arguments.variant},
-    **{name: False for name in arguments.declare_not},
+    "batches": "float32",
+    "parameters": {k: v["value"] if isinstance(v, dict) else v for k, v in parameters.items()},
 }
+if parameters.get("anisotropic") or parameters.get("alpha_u") != parameters.get("alpha_v"):
+    hello["isotropic"] = False
 if (n := relative_ior()) is not None:
     hello["relative_ior"] = n
 answers.write(json.dumps(hello).encode() + b"\n")
 answers.flush()
 
 functions = {b"eval": evaluate, b"pdf ": density, b"samp": sample}
-size = 4 if single else 8
 while header := asked.read(12):
     count = int.from_bytes(header[4:8], "little")
-    a, b = np.frombuffer(asked.read(6 * size * count), number).reshape(2, count, 3)
-    answer = functions[header[:4]](a, b)
-    answers.write(header + np.ascontiguousarray(answer, number).tobytes())
+    a, b = np.frombuffer(asked.read(24 * count), "<f4").reshape(2, count, 3)
+    answer = np.ascontiguousarray(functions[header[:4]](a, b), "<f4")
+    answers.write(header + answer.tobytes())
     answers.flush()

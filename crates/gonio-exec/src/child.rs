@@ -24,7 +24,7 @@ const TAIL_BYTES: usize = 1 << 14;
 const TAIL_LINES: usize = 12;
 const TAIL_WIDTH: usize = 200;
 /// How long a process may take to end by itself after its input has, and to be gone after its output has.
-const GRACE: Duration = Duration::from_secs(2);
+pub(crate) const GRACE: Duration = Duration::from_secs(2);
 
 /// What happened on the pipes.
 pub(crate) enum Event {

@@ -1,7 +1,7 @@
 //! Questions and answers, one at a time, whatever comes.
 
 use crate::binary::{self, Width};
-use crate::child::{Child, Event, in_words};
+use crate::child::{Child, Event, GRACE, in_words};
 use crate::command::CommandLine;
 use crate::error::{Ask, ExecError, Fault, Question, excerpt};
 use crate::hello::Hello;
@@ -89,7 +89,8 @@ impl Conversation {
     ) -> Result<Vec<u8>, Fault> {
         self.collect();
         self.unasked()?;
-        let deadline = Instant::now() + self.limit;
+        let mut deadline = Instant::now() + self.limit;
+        let mut input_closed = false;
         self.child.send(asked);
         let width = match question.ask {
             Ask::Hello => None,
@@ -134,6 +135,7 @@ impl Conversation {
             }
             match self.child.wait(deadline) {
                 Event::Bytes(bytes) => self.pending.extend(bytes),
+                Event::Late if input_closed => return Err(self.gone(question, "input")),
                 Event::Late => {
                     return Err(Fault::Timeout {
                         question,
@@ -142,7 +144,11 @@ impl Conversation {
                     });
                 }
                 Event::OutputClosed => return Err(self.gone(question, "output")),
-                Event::InputClosed => return Err(self.gone(question, "input")),
+                // What it wrote before may still come, and says more.
+                Event::InputClosed => {
+                    input_closed = true;
+                    deadline = deadline.min(Instant::now() + GRACE);
+                }
             }
         }
     }

@@ -11,11 +11,13 @@
 //! | [`image`] | pictures of light: files, tone mapping, differences |
 //! | [`verify`] | evidence: is this reflection function physical? |
 //! | [`plot`] | pictures of reflection functions |
+//! | [`exec`] | reflection functions that other programs evaluate |
 //! | [`brdf`] | reflection functions and their registry |
 //! | [`env`](mod@env) | environment maps |
 //! | [`scene`] | shapes, materials, lights, cameras, and readers |
 //! | [`render`] | the reflection equation solved over a scene; radiometric sensors |
 //! | [`preview`] | the embedded scene that `gonio render` shows without a file |
+//! | [`report`] | verdicts as JUnit XML and as a page of HTML |
 //!
 //! # radiometry
 //! Quantities are types: radiance times projected solid angle is irradiance, and a wrong product does not compile.
@@ -93,11 +95,13 @@
 
 pub use gonio_brdf as brdf;
 pub use gonio_env as env;
+pub use gonio_exec as exec;
 pub use gonio_image as image;
 pub use gonio_num as num;
 pub use gonio_plot as plot;
 pub use gonio_radiometry as radiometry;
 pub use gonio_render as render;
+pub use gonio_report as report;
 pub use gonio_scene as scene;
 pub use gonio_verify as verify;
 

@@ -84,7 +84,9 @@ fn fault(words: &[String]) -> Option<String> {
         Command::Brdf(
             brdf::Command::Show { name: spec, .. }
             | brdf::Command::Eval { spec, .. }
-            | brdf::Command::Check(brdf::check::Arguments { spec, .. }),
+            | brdf::Command::Check(brdf::check::Arguments {
+                spec: Some(spec), ..
+            }),
         ) if spec != "all" => spec,
         _ => return None,
     };

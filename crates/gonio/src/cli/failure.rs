@@ -1,8 +1,9 @@
 //! How the command fails: one `error:` line, one `help:` line, and an exit code.
 
-use super::terminal::say;
+use super::terminal::{quote, say};
 use gonio_brdf::BrdfError;
 use gonio_env::EnvError;
+use gonio_exec::{ExecError, Fault};
 use gonio_image::ImageError;
 use gonio_render::RenderError;
 use gonio_scene::SceneError;
@@ -16,6 +17,8 @@ pub(crate) struct Failure {
     code: u8,
     message: String,
     help: Option<String>,
+    /// What somebody else said about it, in lines.
+    quoted: Vec<String>,
 }
 
 impl Failure {
@@ -24,6 +27,7 @@ impl Failure {
             code,
             message: message.into(),
             help: None,
+            quoted: Vec::new(),
         }
     }
     /// A verification failed; the report is already printed.
@@ -64,6 +68,9 @@ impl Failure {
 
     /// Prints it to standard error.
     pub fn report(&self) -> ExitCode {
+        for line in &self.quoted {
+            quote(line);
+        }
         say("error", &self.message);
         if let Some(help) = &self.help {
             say("help", help);
@@ -152,6 +159,22 @@ impl From<BrdfError> for Failure {
                 .with_help(help.unwrap_or(format!("see 'gonio brdf show {model}'"))),
             _ => Self::usage(message)
                 .with_help(help.unwrap_or("'gonio brdf list' names the models".into())),
+        }
+    }
+}
+
+impl From<ExecError> for Failure {
+    fn from(error: ExecError) -> Self {
+        let message = plain(&error);
+        let failure = match error.fault {
+            Fault::EmptyCommand | Fault::OpenQuote => {
+                Self::usage(format!("--exec '{}': {}", error.command, error.fault))
+            }
+            _ => Self::input(message),
+        };
+        Self {
+            quoted: error.stderr.clone(),
+            ..failure.with_help(error.help())
         }
     }
 }

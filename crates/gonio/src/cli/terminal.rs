@@ -41,6 +41,11 @@ pub(super) fn say(kind: &str, text: &str) {
     let _ = writeln!(std::io::stderr(), "{kind}: {text}");
 }
 
+/// A line of what another program said, on standard error.
+pub(super) fn quote(line: &str) {
+    let _ = writeln!(std::io::stderr(), "  | {line}");
+}
+
 /// A number with seven significant digits, without an exponent where it reads well.
 pub(super) fn significant(value: f64) -> String {
     if value == 0.0 {

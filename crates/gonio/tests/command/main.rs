@@ -7,6 +7,7 @@ mod brdf;
 mod damaged;
 mod diff;
 mod environment;
+mod exec;
 mod interrupt;
 mod measure;
 mod render;

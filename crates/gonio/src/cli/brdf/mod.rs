@@ -2,6 +2,8 @@
 
 pub(in crate::cli) mod check;
 mod convert;
+mod exec;
+mod files;
 mod info;
 mod plot;
 

@@ -1,0 +1,84 @@
+//! `--junit` and `--html`: verdicts as files.
+
+use crate::cli::destination;
+use crate::cli::failure::Failure;
+use gonio_brdf::ModelSpec;
+use gonio_report::{self as report, Document, Section};
+use gonio_verify::{Expectation, Report};
+use std::path::PathBuf;
+use std::time::Duration;
+
+#[derive(clap::Args)]
+pub(super) struct Files {
+    /// Write the verdicts as JUnit XML, which build servers show
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Write the verdicts as a page of HTML with plots, in one file
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+}
+
+impl Files {
+    /// Fails unless the files can be written.
+    pub(super) fn writable(&self) -> Result<(), Failure> {
+        if let (Some(junit), Some(html)) = (&self.junit, &self.html)
+            && junit == html
+        {
+            let message = format!(
+                "{}: both --junit and --html are to be written there",
+                junit.display()
+            );
+            return Err(Failure::usage(message).with_help("give them different names"));
+        }
+        for file in self.junit.iter().chain(&self.html) {
+            destination::writable(file)?;
+        }
+        Ok(())
+    }
+
+    /// Writes them, each whole or not at all. `command` gives the same verdicts.
+    pub(super) fn write(&self, sections: Vec<Section>, command: &str) -> Result<(), Failure> {
+        let document = Document {
+            sections,
+            command: command.into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+        };
+        if let Some(file) = &self.junit {
+            gonio_image::write_file(file, report::junit(&document).as_bytes())?;
+        }
+        if let Some(file) = &self.html {
+            gonio_image::write_file(file, report::html(&document).as_bytes())?;
+        }
+        Ok(())
+    }
+}
+
+/// What a report says of a model of the registry.
+pub(super) fn section(
+    spec: &ModelSpec,
+    report: Report,
+    took: Duration,
+) -> Result<Section, Failure> {
+    let declares = spec.declares()?;
+    let expectation = Expectation {
+        reciprocal: declares.reciprocal,
+        energy_conserving: declares.energy_conserving,
+        isotropic: declares.isotropic,
+    };
+    let info = spec.info()?;
+    let mut section = Section::new(report, expectation);
+    section.seconds = took.as_secs_f64();
+    section.facts = vec![
+        ("Model".into(), format!("{}: {}", info.name, info.summary)),
+        ("Source".into(), info.paper.into()),
+    ];
+    let values: Vec<String> = info
+        .parameters
+        .iter()
+        .filter_map(|p| Some(format!("{} = {}", p.name, spec.value(p.name)?)))
+        .collect();
+    if !values.is_empty() {
+        section.facts.push(("Parameters".into(), values.join(", ")));
+    }
+    Ok(section)
+}
