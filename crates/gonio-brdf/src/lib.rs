@@ -44,7 +44,7 @@ pub mod record;
 pub mod registry;
 
 pub use brdf::{Brdf, Sample};
-pub use check::check;
+pub use check::{CheckOptions, check, check_with};
 pub use error::BrdfError;
 pub use model::{Model, ParameterSlot};
 pub use number::{Function, Index, LaneIndex, Number};

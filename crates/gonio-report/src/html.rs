@@ -76,7 +76,7 @@ fn lead(document: &Document) -> String {
         };
         let judged = verdicts
             .iter()
-            .filter(|v| v.outcome != Outcome::NotApplicable)
+            .filter(|v| !matches!(v.outcome, Outcome::NotApplicable | Outcome::Information))
             .count();
         let mut text = match one.report.failures().count() {
             0 => format!(
@@ -97,6 +97,10 @@ fn lead(document: &Document) -> String {
                 "is violated",
                 &format!("only what it declares to lack is violated ({declared})"),
             );
+        }
+        let allowed = named(Outcome::Allowed);
+        if !allowed.is_empty() {
+            text += &format!(" Violated, but allowed: {allowed}.");
         }
         return escaped(&text);
     }
@@ -120,8 +124,8 @@ fn class(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Pass => "pass",
         Outcome::Fail => "fail",
-        Outcome::Declared => "declared",
-        Outcome::NotApplicable => "none",
+        Outcome::Declared | Outcome::Allowed => "declared",
+        Outcome::Information | Outcome::NotApplicable => "none",
     }
 }
 
@@ -129,7 +133,8 @@ fn mark(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Pass => "✓",
         Outcome::Fail => "✗",
-        Outcome::Declared => "!",
+        Outcome::Declared | Outcome::Allowed => "!",
+        Outcome::Information => "·",
         Outcome::NotApplicable => "–",
     }
 }
@@ -241,6 +246,10 @@ fn meaning(property: Property) -> &'static str {
         Property::SampleWeight => {
             "weight = f cosθi / pdf, and every direction that reflects can be drawn."
         }
+        Property::Continuity => "f cosθi falls to 0 as the light sinks to the horizon.",
+        Property::EnergyLoss => "How far the directional albedo falls short of 1.",
+        Property::SinglePrecision => "The same function in single precision gives the same values.",
+        Property::Declarations => "What is declared as lacking is lacking.",
     }
 }
 
@@ -248,7 +257,7 @@ fn meaning(property: Property) -> &'static str {
 fn witnesses(section: &Section) -> String {
     let mut out = String::new();
     for v in &section.report.verdicts {
-        if !matches!(v.outcome, Outcome::Fail | Outcome::Declared) {
+        if !v.violated() {
             continue;
         }
         let Some(w) = &v.witness else { continue };

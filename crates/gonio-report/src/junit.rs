@@ -1,6 +1,6 @@
 //! JUnit XML, the form of test results that build servers read.
 
-use crate::text::{certainty, escaped, figure, number, witness};
+use crate::text::{certainty, escaped, figure, number, outcome, witness};
 use crate::{Document, Section};
 use gonio_verify::{Outcome, Verdict};
 
@@ -80,11 +80,15 @@ fn case(class: &str, v: &Verdict) -> String {
     let open = format!("    <testcase classname=\"{class}\" name=\"{name}\" time=\"0\"");
     let summary = format!("{} (bound {}): {}", figure(v), number(v.bound), v.detail);
     let inner = match v.outcome {
-        Outcome::Pass => return format!("{open}/>\n"),
+        Outcome::Pass | Outcome::Information => return format!("{open}/>\n"),
         Outcome::NotApplicable => format!("<skipped message=\"{}\"/>", escaped(&v.detail)),
-        Outcome::Declared => format!(
+        Outcome::Declared | Outcome::Allowed => format!(
             "<system-out>{}</system-out>",
-            escaped(&format!("declared: {summary}\n{}", evidence(v)))
+            escaped(&format!(
+                "{}: {summary}\n{}",
+                outcome(v.outcome),
+                evidence(v)
+            ))
         ),
         Outcome::Fail => format!(
             "<failure type=\"{name}\" message=\"{}\">{}</failure>",

@@ -55,6 +55,8 @@ pub(crate) fn outcome(outcome: Outcome) -> &'static str {
         Outcome::Pass => "pass",
         Outcome::Fail => "FAIL",
         Outcome::Declared => "declared",
+        Outcome::Allowed => "allowed",
+        Outcome::Information => "measured",
         Outcome::NotApplicable => "n/a",
     }
 }

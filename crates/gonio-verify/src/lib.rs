@@ -20,11 +20,13 @@ mod reflection;
 mod report;
 mod search;
 mod settings;
+pub mod specimen;
 pub mod statistics;
 mod subject;
+mod table;
 mod verdict;
 
-pub use check::{Checker, check};
+pub use check::{Checker, Progress, check};
 pub use reflection::{EvalFn, PdfFn, Reflection, SampleFn, SubjectFailed, SubjectSample};
 pub use report::Report;
 pub use settings::{Effort, Precision, Settings};

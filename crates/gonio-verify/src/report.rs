@@ -1,11 +1,12 @@
 //! A report: the verdicts on one subject, as a table for people and as data for programs.
 
 use crate::settings::Effort;
+use crate::table::Table;
 use crate::verdict::{Outcome, Property, Verdict};
 use serde::Serialize;
 use std::fmt;
 
-/// The verdicts on one subject. `Display` prints a table with the witnesses of all violations below it.
+/// The verdicts on one subject. `Display` prints [`Report::table`] without colours.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Report {
     /// The subject's name.
@@ -29,99 +30,21 @@ impl Report {
         self.verdicts.iter().filter(|v| v.outcome == Outcome::Fail)
     }
 
+    /// The table for people, at most 80 columns wide but for a name without a comma: a line a property, and below it each violation with
+    /// all that reproduces it. `colour`: with ANSI colours, for a terminal.
+    pub fn table(&self, colour: bool) -> String {
+        Table::of(self, colour)
+    }
+
     /// The verdict on `property`.
     pub fn verdict(&self, property: Property) -> Option<&Verdict> {
         self.verdicts.iter().find(|v| v.property == property)
     }
 }
 
-fn mark(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Pass => "✓ pass",
-        Outcome::Fail => "✗ FAIL",
-        Outcome::Declared => "! declared",
-        Outcome::NotApplicable => "- n/a",
-    }
-}
-
-/// A number in at most nine characters: plain near 1, with an exponent elsewhere.
-fn number(x: f64) -> String {
-    if x.is_nan() {
-        "-".into()
-    } else if x == 0.0 {
-        "0".into()
-    } else if (1e-3..1e5).contains(&x.abs()) {
-        format!("{x:.5}")
-    } else {
-        format!("{x:.2e}")
-    }
-}
-
-fn violation(v: &Verdict) -> bool {
-    matches!(v.outcome, Outcome::Fail | Outcome::Declared)
-}
-
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", self.subject)?;
-        for v in &self.verdicts {
-            let figure = match v.p_value {
-                Some(p) => format!("p = {}", number(p)),
-                None => number(v.figure),
-            };
-            writeln!(
-                f,
-                "  {:<10}  {:<14}  {:>12}  (bound {:>8})  {}",
-                mark(v.outcome),
-                v.property,
-                figure,
-                number(v.bound),
-                v.detail
-            )?;
-        }
-        for v in self.verdicts.iter().filter(|v| violation(v)) {
-            let Some(w) = &v.witness else { continue };
-            writeln!(f, "  worst for {}:", v.property)?;
-            writeln!(f, "    wo  {}", w.wo)?;
-            if let Some(wi) = &w.wi {
-                writeln!(f, "    wi  {wi}")?;
-            }
-            if let Some(u) = w.u {
-                writeln!(f, "    u   {u:?}")?;
-            }
-            for value in &w.values {
-                writeln!(f, "    {} = {}", value.name, value.value)?;
-            }
-            if let Some(c) = v.confidence {
-                let (low, high) = (number(c.low), number(c.high));
-                if c.level < 1.0 {
-                    writeln!(
-                        f,
-                        "    in [{low}, {high}] with confidence 1 − {:.1e}",
-                        1.0 - c.level
-                    )?;
-                } else {
-                    writeln!(f, "    in [{low}, {high}] by quadrature")?;
-                }
-            }
-        }
-        for v in &self.verdicts {
-            if let Some(note) = &v.note {
-                writeln!(f, "  note on {}: {note}", v.property)?;
-            }
-        }
-        let count = |o| self.verdicts.iter().filter(|v| v.outcome == o).count();
-        let samples: u64 = self.verdicts.iter().map(|v| v.samples).sum();
-        write!(
-            f,
-            "  {}: {} passed, {} failed, {} declared, {} not applicable; {samples} evaluations; seed \"{}\"",
-            if self.passed() { "PASS" } else { "FAIL" },
-            count(Outcome::Pass),
-            count(Outcome::Fail),
-            count(Outcome::Declared),
-            count(Outcome::NotApplicable),
-            self.seed_name
-        )
+        f.write_str(&self.table(false))
     }
 }
 
@@ -168,21 +91,20 @@ mod tests {
         for part in [
             "✓ pass",
             "✗ FAIL",
-            "! declared",
+            "! lacks",
             "- n/a",
-            "worst for reciprocity:",
+            "90,0→0,0",
+            "✗ FAIL reciprocity",
             "θ 90.0000° φ 0.0000°",
             "f(wi, wo) = 2",
-            "FAIL: 1 passed, 1 failed, 1 declared, 1 not applicable",
+            "FAIL: 1 passed, 1 failed, 1 lacking as declared; 30 evaluations; seed \"seed\"",
         ] {
             assert!(text.contains(part), "{part}\n{text}");
         }
-        let column = |line: &str| line.find("(bound");
-        let lines: Vec<&str> = text.lines().filter(|l| l.contains("(bound")).collect();
-        assert_eq!(lines.len(), 4);
-        // Counted in characters, the marks being longer in bytes.
-        let at = |l: &str| column(l).map(|b| l[..b].chars().count());
-        assert!(lines.iter().all(|l| at(l) == at(lines[0])), "{text}");
+        assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
+        let coloured = report().table(true);
+        assert!(coloured.contains("\x1b[1;31m✗ FAIL"), "{coloured}");
+        assert!(!text.contains('\x1b'));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! How hard to look, and how large a violation may be before it is one.
 
+use crate::statistics::sidak;
+
 /// How hard to look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -47,6 +49,12 @@ pub struct Settings {
     pub weight_bound: f64,
     /// How far a directional albedo may exceed 1.
     pub energy_bound: f64,
+    /// How far a directional albedo may fall short of 1; `None`: any distance is information.
+    pub loss_bound: Option<f64>,
+    /// How much of a typical f the value f·|cosθi| at the horizon may be.
+    pub continuity_bound: f64,
+    /// Relative difference allowed between the subject and itself in single precision.
+    pub single_bound: f64,
     /// How far the integral of the density may be from the sampled fraction.
     pub integral_bound: f64,
 }
@@ -70,7 +78,25 @@ impl Settings {
             relative_bound: 1e-6,
             weight_bound: 1e-6,
             energy_bound: 1e-4,
+            loss_bound: None,
+            continuity_bound: 1e-3,
+            single_bound: 1e-2,
             integral_bound: 1e-3,
+        }
+    }
+
+    /// For one of `points` checks that are judged together, such as those of a sweep over parameters: some 10⁴ evaluations a
+    /// property, and a chance of a false alarm that is that of [`Settings::new`] over all of them.
+    pub fn glance(points: u64) -> Self {
+        let usual = Self::new(Effort::Quick);
+        Self {
+            pairs: 1_000,
+            directions: 3,
+            density_samples: 8_000,
+            cells: 96,
+            quadrature_evaluations: 40_000,
+            false_positive_rate: sidak(usual.false_positive_rate, points.max(1)),
+            ..usual
         }
     }
 
@@ -98,6 +124,15 @@ impl Settings {
         match self.precision {
             Precision::Double => 1e-12,
             Precision::Single => 1e-5,
+        }
+    }
+
+    /// The heights z at which a light is looked at on its way to the horizon. The last is far below the width of every lobe
+    /// that the precision can carry.
+    pub(crate) fn sinking(&self) -> [f64; 2] {
+        match self.precision {
+            Precision::Double => [1e-6, 1e-10],
+            Precision::Single => [1e-4, 1e-6],
         }
     }
 

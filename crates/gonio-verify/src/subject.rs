@@ -22,6 +22,7 @@ pub struct Subject<'a> {
     /// `None`: it only reflects, and everything below the horizon must be exactly 0. Otherwise light may pass to the other
     /// side, z < 0, from either side, and this is the index of refraction there over the one above, each channel.
     pub relative_ior: Option<[f64; 3]>,
+    single: Option<&'a dyn Reflection>,
 }
 
 /// Where the answers to one kind of question come from.
@@ -47,6 +48,7 @@ impl<'a> Subject<'a> {
             pdf: None,
             sample: None,
             relative_ior: None,
+            single: None,
         }
     }
 
@@ -61,6 +63,7 @@ impl<'a> Subject<'a> {
                 .has_sample()
                 .then_some(Operation::Batch(reflection)),
             relative_ior: reflection.relative_ior(),
+            single: None,
         }
     }
 
@@ -85,6 +88,18 @@ impl<'a> Subject<'a> {
     pub fn transmitting(mut self, relative_ior: [f64; 3]) -> Self {
         self.relative_ior = Some(relative_ior);
         self
+    }
+
+    /// Adds the same function as it computes in single precision, for [`crate::Property::SinglePrecision`]. It is asked at
+    /// directions that `f32` can hold.
+    pub fn with_single(mut self, single: &'a dyn Reflection) -> Self {
+        self.single = Some(single);
+        self
+    }
+
+    /// The same function in single precision, as a subject.
+    pub(crate) fn single(&self) -> Option<Subject<'a>> {
+        Some(Subject::batched("single precision", self.single?))
     }
 
     /// Whether nothing passes to the other side.

@@ -13,10 +13,14 @@ pub enum Property {
     NonNegative,
     /// A function that only reflects is exactly 0 below the horizon, and draws nothing there.
     Horizon,
+    /// f·|cosθi| falls to 0 as the light sinks to the horizon.
+    Continuity,
     /// f(ωi→ωr) = f(ωr→ωi).
     Reciprocity,
     /// Directional albedo ≤ 1.
     EnergyConservation,
+    /// How far the directional albedo falls short of 1.
+    EnergyLoss,
     /// f depends on φi − φr only.
     Isotropy,
     /// f is the sum of its components.
@@ -27,21 +31,29 @@ pub enum Property {
     SampleDensity,
     /// weight = f·|cosθi| / pdf, the returned density = pdf, and every direction that reflects can be drawn.
     SampleWeight,
+    /// The same function in single precision gives the same values.
+    SinglePrecision,
+    /// What is declared as lacking is lacking.
+    Declarations,
 }
 
 impl Property {
     /// All properties, in the order of a report.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 14] = [
         Self::Finite,
         Self::NonNegative,
         Self::Horizon,
+        Self::Continuity,
         Self::Reciprocity,
         Self::EnergyConservation,
+        Self::EnergyLoss,
         Self::Isotropy,
         Self::Linearity,
         Self::PdfIntegral,
         Self::SampleDensity,
         Self::SampleWeight,
+        Self::SinglePrecision,
+        Self::Declarations,
     ];
 
     /// The property in plain words.
@@ -50,14 +62,29 @@ impl Property {
             Self::Finite => "finite",
             Self::NonNegative => "non-negative",
             Self::Horizon => "horizon",
+            Self::Continuity => "continuity",
             Self::Reciprocity => "reciprocity",
             Self::EnergyConservation => "energy",
+            Self::EnergyLoss => "energy loss",
             Self::Isotropy => "isotropy",
             Self::Linearity => "linearity",
             Self::PdfIntegral => "pdf integral",
             Self::SampleDensity => "sample density",
             Self::SampleWeight => "sample weight",
+            Self::SinglePrecision => "single precision",
+            Self::Declarations => "declarations",
         }
+    }
+
+    /// The property as one word, as a command line has it: [`Property::name`] with hyphens.
+    pub fn key(self) -> String {
+        self.name().replace(' ', "-")
+    }
+
+    /// The property of this [key](Property::key) or name.
+    pub fn find(word: &str) -> Option<Self> {
+        let word = word.trim().to_lowercase().replace([' ', '_'], "-");
+        Self::ALL.into_iter().find(|p| p.key() == word)
     }
 }
 
@@ -75,8 +102,12 @@ pub enum Outcome {
     Pass,
     /// Violated, and not declared.
     Fail,
+    /// Violated, and the one who asked allows it.
+    Allowed,
     /// Violated as declared; the figure is what it costs.
     Declared,
+    /// Measured, and held to no bound.
+    Information,
     /// Not checked; the detail says why.
     NotApplicable,
 }
@@ -252,6 +283,14 @@ impl Verdict {
         }
     }
 
+    /// Whether it was found violated, be that a failure, declared or allowed.
+    pub fn violated(&self) -> bool {
+        matches!(
+            self.outcome,
+            Outcome::Fail | Outcome::Declared | Outcome::Allowed
+        )
+    }
+
     /// Sets the outcome from whether the property is violated and whether it was declared to hold.
     pub(crate) fn judge(mut self, violated: bool, declared_to_hold: bool) -> Self {
         self.outcome = match (violated, declared_to_hold) {
@@ -259,9 +298,6 @@ impl Verdict {
             (true, true) => Outcome::Fail,
             (true, false) => Outcome::Declared,
         };
-        if !violated && !declared_to_hold {
-            self.note = Some("not declared to hold, but no violation was found".into());
-        }
         self
     }
 }

@@ -62,6 +62,7 @@ fn report(spec: &ModelSpec) -> Result<Report, String> {
 fn row(verdict: &Verdict) -> String {
     // A p-value passes above its bound, everything else up to it.
     let bound = match (verdict.p_value.is_some(), number(verdict.bound)) {
+        _ if verdict.bound.is_nan() => String::new(),
         (_, tiny) if tiny.starts_with('<') => tiny,
         (true, p) => format!("≥ {p}"),
         (false, most) => format!("≤ {most}"),
@@ -70,6 +71,8 @@ fn row(verdict: &Verdict) -> String {
         Outcome::Pass => "pass",
         Outcome::Fail => "FAIL",
         Outcome::Declared => "missing, as declared",
+        Outcome::Allowed => "missing, allowed",
+        Outcome::Information => "measured",
         // The detail says why, without a number.
         Outcome::NotApplicable => {
             return format!("| {} | n/a: {} | | |\n", verdict.property, verdict.detail);
@@ -95,7 +98,8 @@ fn mark(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Pass => "✓",
         Outcome::Fail => "✗",
-        Outcome::Declared => "!",
+        Outcome::Declared | Outcome::Allowed => "!",
+        Outcome::Information => "·",
         Outcome::NotApplicable => "n/a",
     }
 }

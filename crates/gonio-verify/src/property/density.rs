@@ -13,6 +13,7 @@ use crate::statistics::{
 use crate::subject::Pair;
 use crate::verdict::{Interval, Property, Verdict, Witness};
 use gonio_num::Vec3;
+use rayon::prelude::*;
 
 /// Above this quadrature error a direction can't be judged.
 const BLIND: f64 = 0.02;
@@ -157,6 +158,10 @@ fn look(
     })
 }
 
+pub(super) fn directions(c: &Checker) -> Vec<Vec3<f64>> {
+    viewers(c, c.settings.directions, 86.0)
+}
+
 /// The density integrates to the fraction of draws that give a direction, and the drawn directions fall into cells of the
 /// sphere as the density says, at several outgoing directions with Šidák's correction.
 ///
@@ -173,10 +178,9 @@ pub(super) fn check(c: &Checker) -> Result<[Verdict; 2], SubjectFailed> {
         return not_applicable("the subject can't be sampled");
     }
     let rate = c.settings.false_positive_rate;
-    let directions = viewers(c, c.settings.directions, 86.0);
+    let directions = directions(c);
     let each = sidak(rate, directions.len() as u64);
-    let mut looks: Vec<Look> = Vec::new();
-    for (index, wo) in directions.into_iter().enumerate() {
+    let judged = |(index, wo): (usize, Vec3<f64>)| {
         let mut l = look(c, wo, index, each, 1)?;
         let suspicious = l.excess() > c.settings.integral_bound
             || l.chi_square.p_value < each.max(1e-3)
@@ -186,8 +190,14 @@ pub(super) fn check(c: &Checker) -> Result<[Verdict; 2], SubjectFailed> {
             l = look(c, wo, index, each, SECOND_LOOK)?;
             l.samples += before;
         }
-        looks.push(l);
-    }
+        c.step();
+        Ok(l)
+    };
+    let looks = directions
+        .into_par_iter()
+        .enumerate()
+        .map(judged)
+        .collect::<Result<Vec<Look>, SubjectFailed>>()?;
     if looks.iter().all(|l| l.drawn == 0.0 && l.integral == 0.0) {
         let only_deltas = looks.iter().any(|l| l.deltas > 0);
         return not_applicable(if only_deltas {

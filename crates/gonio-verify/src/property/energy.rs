@@ -3,7 +3,7 @@
 use super::furnace::Furnace;
 use crate::check::Checker;
 use crate::statistics::{normal_quantile, sidak};
-use crate::verdict::{Interval, Property, Verdict, Witness};
+use crate::verdict::{Interval, Outcome, Property, Verdict, Witness};
 
 /// One furnace's albedo in one channel.
 struct Albedo<'a> {
@@ -39,7 +39,7 @@ fn albedo(furnace: &Furnace, channel: usize, z: f64) -> Albedo<'_> {
 /// bound of the quadrature or of the sampling above that.
 ///
 /// The quadrature's error is estimated, not proved; the smallest albedo is information.
-pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
+pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> [Verdict; 2] {
     let property = Property::EnergyConservation;
     let rate = c.settings.false_positive_rate;
     let z = normal_quantile(sidak(rate, 6 * furnaces.len() as u64));
@@ -54,6 +54,7 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
     };
     let worst = by(|a| a.low.max(a.sampled_low));
     let darkest = by(|a| -a.value);
+    let loss = loss(c, darkest);
     let samples = furnaces.iter().map(|f| f.evaluations).sum();
     let bound = 1.0 + c.settings.energy_bound;
     let low = worst.low.max(worst.sampled_low);
@@ -99,5 +100,42 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> Verdict {
             0.5 * unsure
         ));
     }
-    v
+    [v, loss]
+}
+
+/// How much of the light is lost at most: 1 − the smallest directional albedo. A failure needs the lower confidence bound above
+/// what the settings allow; without that it is information, since most surfaces absorb.
+fn loss(c: &Checker, darkest: &Albedo) -> Verdict {
+    let f = darkest.furnace;
+    let (figure, low) = (1.0 - darkest.value, 1.0 - darkest.high);
+    let bound = c.settings.loss_bound.unwrap_or(f64::NAN);
+    let mut v = Verdict::passing(Property::EnergyLoss, figure, bound, f.evaluations);
+    let by_chance = f.delta_draws > 0;
+    let rate = if by_chance {
+        c.settings.false_positive_rate
+    } else {
+        0.0
+    };
+    v.false_positive_rate = rate;
+    v.confidence = Some(Interval {
+        low,
+        high: 1.0 - darkest.low,
+        level: 1.0 - rate,
+    });
+    v.witness = Some(
+        Witness::at(f.wo)
+            .value("albedo by quadrature", f.quadrature[darkest.channel])
+            .value("quadrature error", f.error[darkest.channel])
+            .value("albedo of Dirac deltas", f.delta[darkest.channel].mean()),
+    );
+    v.detail = format!(
+        "the furnace falls short of 1 by at most {figure:.6}, at {:.1}°, in channel {}",
+        crate::verdict::Direction::from(f.wo).theta_deg,
+        darkest.channel
+    );
+    if c.settings.loss_bound.is_none() {
+        v.outcome = Outcome::Information;
+        return v;
+    }
+    v.judge(low > bound, true)
 }

@@ -10,6 +10,7 @@ use crate::statistics::{Moments, bernstein_deviation};
 use crate::subject::Pair;
 use crate::verdict::Property;
 use gonio_num::Vec3;
+use rayon::prelude::*;
 
 /// How much harder a suspicion is looked at before it becomes a verdict.
 pub(super) const SECOND_LOOK: u64 = 8;
@@ -72,19 +73,25 @@ pub(super) fn lobes(c: &Checker, wo: Vec3<f64>) -> Vec<Vec3<f64>> {
     all
 }
 
-/// A furnace for each of twice the usual number of directions, up to 89.5°.
-pub(super) fn measure(c: &Checker) -> Result<Vec<Furnace>, SubjectFailed> {
+/// Twice the usual number of directions, up to 89.5°.
+pub(super) fn directions(c: &Checker) -> Vec<Vec3<f64>> {
     viewers(c, 2 * c.settings.directions, 89.5)
-        .into_iter()
+}
+
+/// A furnace for each of the [`directions`].
+pub(super) fn measure(c: &Checker) -> Result<Vec<Furnace>, SubjectFailed> {
+    directions(c)
+        .into_par_iter()
         .enumerate()
         .map(|(k, wo)| {
-            let first = at(c, wo, k, 1)?;
-            if !suspicious(c, &first) {
-                return Ok(first);
+            let mut furnace = at(c, wo, k, 1)?;
+            if suspicious(c, &furnace) {
+                let before = furnace.evaluations;
+                furnace = at(c, wo, k, SECOND_LOOK)?;
+                furnace.evaluations += before;
             }
-            let mut again = at(c, wo, k, SECOND_LOOK)?;
-            again.evaluations += first.evaluations;
-            Ok(again)
+            c.step();
+            Ok(furnace)
         })
         .collect()
 }

@@ -1,5 +1,7 @@
 //! One module a property, or a group of properties that the same evaluations answer.
 
+mod continuity;
+mod declarations;
 mod density;
 mod energy;
 mod furnace;
@@ -7,6 +9,7 @@ mod isotropy;
 mod linearity;
 mod reciprocity;
 mod signs;
+mod single;
 mod weight;
 
 use crate::check::Checker;
@@ -15,27 +18,56 @@ use crate::subject::{BATCH, Draw};
 use crate::verdict::{Property, Verdict};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::Rng;
+use rayon::prelude::*;
+
+/// A group of properties that share their evaluations.
+type Group = fn(&Checker) -> Result<Vec<Verdict>, SubjectFailed>;
+
+/// Each group is a task for a thread; the long ones are first, and divide themselves by direction.
+const GROUPS: [Group; 8] = [
+    furnaces,
+    |c| Ok(density::check(c)?.into()),
+    |c| Ok(vec![isotropy::check(c)?]),
+    |c| Ok(vec![reciprocity::check(c)?]),
+    |c| Ok(vec![single::check(c)?]),
+    |c| Ok(signs::check(c)?.into()),
+    |c| Ok(vec![continuity::check(c)?]),
+    |c| Ok(vec![linearity::check(c)?]),
+];
+
+fn furnaces(c: &Checker) -> Result<Vec<Verdict>, SubjectFailed> {
+    let furnaces = furnace::measure(c)?;
+    let [energy, loss] = energy::check(c, &furnaces);
+    Ok(vec![energy, loss, weight::check(c, &furnaces)?])
+}
+
+/// How often [`Checker::step`] is called: once a group, and once for each direction of those that go direction by direction.
+pub(crate) fn steps(c: &Checker) -> u64 {
+    let both = if c.subject.has_pdf() && c.subject.has_sample() {
+        density::directions(c).len()
+    } else {
+        0
+    };
+    (GROUPS.len() + furnace::directions(c).len() + both) as u64
+}
 
 /// Every property, in the order of [`Property::ALL`].
 ///
 /// # Errors
 /// If the subject fails to answer.
 pub(crate) fn all(c: &Checker) -> Result<Vec<Verdict>, SubjectFailed> {
-    let [finite, non_negative, horizon] = signs::check(c)?;
-    let [integral, density] = density::check(c)?;
-    let furnaces = furnace::measure(c)?;
-    Ok(vec![
-        finite,
-        non_negative,
-        horizon,
-        reciprocity::check(c)?,
-        energy::check(c, &furnaces),
-        isotropy::check(c)?,
-        linearity::check(c)?,
-        integral,
-        density,
-        weight::check(c, &furnaces)?,
-    ])
+    let groups = GROUPS
+        .par_iter()
+        .map(|group| {
+            let verdicts = group(c);
+            c.step();
+            verdicts
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut all: Vec<Verdict> = groups.into_iter().flatten().collect();
+    all.push(declarations::check(c, &all));
+    all.sort_by_key(|v| v.property);
+    Ok(all)
 }
 
 /// The random numbers of a property: a function of the seed's name, the property and `part` alone.

@@ -31,6 +31,32 @@ pub fn wilson_interval(hits: u64, trials: u64, tail: f64) -> (f64, f64) {
     ((centre - half).max(0.0), (centre + half).min(1.0))
 }
 
+/// The exact upper bound of a probability of which `hits` in `trials` were seen: with a larger one, so few would be seen with
+/// probability `tail` at most. 1 of no trials.
+///
+/// The p with P(X ≤ hits) = `tail` for a binomial X, or I(p; hits + 1, trials − hits) = 1 − `tail`.
+/// Source: Clopper & Pearson 1934, "The use of confidence or fiducial limits illustrated in the case of the binomial".
+pub fn clopper_pearson_upper(hits: u64, trials: u64, tail: f64) -> f64 {
+    if hits >= trials {
+        return 1.0;
+    }
+    let (n, k) = (trials as f64, hits as f64);
+    if hits == 0 {
+        return 1.0 - gonio_num::Real::powf(tail, 1.0 / n);
+    }
+    let (mut low, mut high) = (k / n, 1.0);
+    // Each step halves the interval: down to the last digits.
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if statrs::function::beta::beta_reg(k + 1.0, n - k, middle) < 1.0 - tail {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
 /// How far the mean of `n` independent numbers may be from its expectation, but for probability `tail` (both sides
 /// together): t with 2 exp(−n t² / (2σ² + 2Wt/3)) = tail.
 ///
@@ -53,6 +79,16 @@ pub fn bernstein_deviation(variance: f64, range: f64, n: u64, tail: f64) -> f64 
 mod tests {
     use super::*;
     use gonio_radiometry::sequence::Rng;
+
+    #[test]
+    fn the_exact_bound_is_exact() {
+        // None of n: 1 − 0.05^(1/n), the "rule of three".
+        assert!((clopper_pearson_upper(0, 30_000, 0.05) / (2.9957 / 30_000.0) - 1.0).abs() < 1e-3);
+        // P(X ≤ 1) = (1 − p)^10 + 10 p (1 − p)^9 = 0.05 at p = 0.394163.
+        assert!((clopper_pearson_upper(1, 10, 0.05) - 0.394_163).abs() < 1e-6);
+        assert_eq!(clopper_pearson_upper(5, 5, 0.05), 1.0);
+        assert_eq!(clopper_pearson_upper(0, 0, 0.05), 1.0);
+    }
 
     #[test]
     fn known_quantiles() {

@@ -10,5 +10,5 @@ pub use hypothesis::{
     sidak_p_value, t_test, welch_t_test, z_test,
 };
 pub use image::{ImageZTest, image_z_test};
-pub use interval::{bernstein_deviation, normal_quantile, wilson_interval};
+pub use interval::{bernstein_deviation, clopper_pearson_upper, normal_quantile, wilson_interval};
 pub use moments::Moments;

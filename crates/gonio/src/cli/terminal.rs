@@ -1,7 +1,7 @@
 //! What the command says: results to standard output, the rest to standard error.
 
 use super::failure::Failure;
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 
 /// Prints to standard output; a reader that closes the pipe early (`| head`) ends the output, not the command.
 ///
@@ -17,6 +17,12 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
             ErrorKind::BrokenPipe => Ok(()),
             _ => Err(Failure::io("standard output", "write", &e)),
         })
+}
+
+/// Whether standard output takes colours: a terminal, unless `NO_COLOR` is set (no-color.org).
+pub(super) fn coloured() -> bool {
+    let asked_not_to = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
+    std::io::stdout().is_terminal() && !asked_not_to
 }
 
 /// Prints a value as indented JSON.

@@ -2,18 +2,29 @@
 
 use super::exec;
 use super::files::{self, Files};
-use crate::cli::failure::Failure;
-use crate::cli::terminal::{print, print_json, warn};
+use crate::cli::failure::{Failure, did_you_mean, nearest};
+use crate::cli::terminal::{coloured, print, print_json, warn};
 use clap::ValueEnum;
-use gonio_brdf::{Model, ModelSpec};
+use gonio_brdf::{BrdfError, CheckOptions, Model, ModelSpec, check_with};
 use gonio_report::Section;
-use gonio_verify::{Effort, Report};
+use gonio_verify::{Effort, Outcome, Property, Report, Settings};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::{Duration, Instant};
 
-pub(super) const HELP: &str = "Examples:\n  gonio brdf check all\n  gonio brdf check phong:exponent=20 --effort thorough\n  \
-    gonio brdf check ggx:metal=gold --html gold.html --junit gold.xml\n  gonio brdf check --exec 'python3 mine.py'\n\n\
-    Exits with 1 if a property fails that is not declared to be missing.";
+pub(super) const HELP: &str = "\
+Examples:
+  gonio brdf check ggx:metal=gold,roughness=0.3
+  gonio brdf check all --effort quick
+  gonio brdf check sheen-charlie --max-loss 0.5
+  gonio brdf check ggx:metal=gold --html gold.html --junit gold.xml
+  gonio brdf check --exec 'python3 mine.py' --allow reciprocity
+
+Each property has its figure, the bound that it is held to, the worst place
+found (θ,φ of wi and wo in degrees), and how sure it is: n, the values looked
+at; ±, the error of an integral; α, the chance that a right function fails.
+
+Exits with 1 if a property fails that is neither declared to be missing nor
+allowed.";
 
 #[derive(clap::Args)]
 #[group(id = "check")]
@@ -31,6 +42,12 @@ pub(in crate::cli) struct Arguments {
     /// How hard to look
     #[arg(long, value_enum, default_value_t = EffortName::Standard)]
     effort: EffortName,
+    /// Properties that may be violated: reciprocity, energy, sample-density, …
+    #[arg(long, value_name = "PROPERTY", value_delimiter = ',', value_parser = property)]
+    allow: Vec<Property>,
+    /// Fail if a directional albedo falls short of 1 by more than this
+    #[arg(long, value_name = "FRACTION", value_parser = fraction)]
+    max_loss: Option<f64>,
     /// Print the reports as JSON
     #[arg(long)]
     json: bool,
@@ -58,6 +75,37 @@ impl From<EffortName> for Effort {
     }
 }
 
+fn property(word: &str) -> Result<Property, String> {
+    Property::find(word).ok_or_else(|| {
+        let keys: Vec<String> = Property::ALL.iter().map(|p| p.key()).collect();
+        match nearest(word, keys.iter().map(String::as_str)) {
+            Some(near) => did_you_mean(&near),
+            None => format!("properties are {}", keys.join(", ")),
+        }
+    })
+}
+
+fn fraction(word: &str) -> Result<f64, String> {
+    match word.parse() {
+        Ok(x) if (0.0..=1.0).contains(&x) => Ok(x),
+        _ => Err("expected a number from 0 to 1".into()),
+    }
+}
+
+impl Arguments {
+    fn options(&self) -> CheckOptions<'static> {
+        let effort = self.effort.into();
+        CheckOptions {
+            settings: Settings {
+                loss_bound: self.max_loss,
+                ..Settings::new(effort)
+            },
+            allow: self.allow.clone(),
+            ..CheckOptions::new(effort)
+        }
+    }
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // Before any time is spent.
     arguments.files.writable()?;
@@ -65,7 +113,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         (Some(command), _) => vec![exec::check(
             command,
             arguments.exec_timeout,
-            arguments.effort.into(),
+            &arguments.options(),
         )?],
         (None, Some(spec)) => named(spec, arguments)?,
         // The parser asks for one of both.
@@ -73,7 +121,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     if arguments.exec.is_some() && !arguments.json {
         for section in &sections {
-            print(&format!("{}\n", section.report))?;
+            print(&section.report.table(coloured()))?;
         }
     }
     let reports: Vec<Report> = sections.iter().map(|s| s.report.clone()).collect();
@@ -95,30 +143,103 @@ fn named(text: &str, arguments: &Arguments) -> Result<Vec<Section>, Failure> {
     } else {
         vec![ModelSpec::parse(text)?]
     };
-    let bar = ProgressBar::new(specs.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{bar:18.cyan/dim} {pos}/{len} {wide_msg}") {
-        bar.set_style(style.progress_chars("━━─"));
-    }
+    let options = arguments.options();
+    let bar = Bar::new();
     let mut sections = Vec::new();
-    for spec in &specs {
+    for (i, spec) in specs.iter().enumerate() {
         if spec.reads_files() {
             let model: Model<f32, 3> = spec.build()?;
             for line in model.warnings() {
-                bar.suspend(|| warn(&line));
+                bar.0.suspend(|| warn(&line));
             }
         }
-        bar.set_message(spec.to_string());
-        bar.tick();
         let began = Instant::now();
-        let report = gonio_brdf::check(spec, arguments.effort.into())?;
+        let report = checked(spec, &options, &bar, [i, specs.len()])?;
         if !arguments.json {
-            bar.suspend(|| print(&format!("{report}\n\n")))?;
+            let text = match specs.len() {
+                1 => report.table(coloured()),
+                _ => in_short(&report),
+            };
+            bar.0.suspend(|| print(&text))?;
         }
         sections.push(files::section(spec, report, began.elapsed())?);
-        bar.inc(1);
     }
-    bar.finish_and_clear();
+    bar.0.finish_and_clear();
     Ok(sections)
+}
+
+/// One of several checks.
+fn checked(
+    spec: &ModelSpec,
+    options: &CheckOptions,
+    bar: &Bar,
+    [index, of]: [usize; 2],
+) -> Result<Report, BrdfError> {
+    bar.0.set_message(spec.to_string());
+    let progress = |done: u64, steps: u64| {
+        let part = done as f64 / steps.max(1) as f64;
+        bar.at((index as f64 + part) / of as f64);
+    };
+    let options = CheckOptions {
+        progress: Some(&progress),
+        ..options.clone()
+    };
+    check_with(spec, &options)
+}
+
+/// A bar that is shown once a second has passed.
+struct Bar(ProgressBar, Instant);
+
+impl Bar {
+    const WHOLE: u64 = 1000;
+
+    fn new() -> Self {
+        let bar = ProgressBar::with_draw_target(
+            Some(Self::WHOLE),
+            indicatif::ProgressDrawTarget::hidden(),
+        );
+        if let Ok(style) =
+            ProgressStyle::with_template("{bar:18.cyan/dim} {percent:>3} % {wide_msg}")
+        {
+            bar.set_style(style.progress_chars("━━─"));
+        }
+        Self(bar, Instant::now())
+    }
+
+    /// The part that is done.
+    fn at(&self, part: f64) {
+        if self.0.is_hidden() && self.1.elapsed() > Duration::from_secs(1) {
+            self.0
+                .set_draw_target(indicatif::ProgressDrawTarget::stderr());
+        }
+        self.0.set_position((part * Self::WHOLE as f64) as u64);
+    }
+}
+
+/// One line for what passed, the whole table for what didn't.
+fn in_short(report: &Report) -> String {
+    if !report.passed() {
+        return report.table(coloured());
+    }
+    let mark = match coloured() {
+        true => "\x1b[32m✓\x1b[0m",
+        false => "✓",
+    };
+    let names = |outcome| {
+        let those = report.verdicts.iter().filter(|v| v.outcome == outcome);
+        those
+            .map(|v| v.property.name())
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let mut text = format!("{mark} {}", report.subject);
+    for (outcome, word) in [(Outcome::Declared, "lacks"), (Outcome::Allowed, "allowed")] {
+        let names = names(outcome);
+        if !names.is_empty() {
+            text += &format!("\n    {word} {names}");
+        }
+    }
+    text
 }
 
 /// The command line that gives the same verdicts.
@@ -132,6 +253,13 @@ fn again(arguments: &Arguments) -> String {
     }
     if let Some(effort) = arguments.effort.to_possible_value() {
         words.extend(["--effort".into(), effort.get_name().to_owned()]);
+    }
+    if !arguments.allow.is_empty() {
+        let keys: Vec<String> = arguments.allow.iter().map(|p| p.key()).collect();
+        words.extend(["--allow".into(), keys.join(",")]);
+    }
+    if let Some(loss) = arguments.max_loss {
+        words.extend(["--max-loss".into(), loss.to_string()]);
     }
     words.join(" ")
 }
@@ -199,5 +327,16 @@ mod tests {
         assert_eq!(judged(&[report(0.5)]), Ok(()));
         let failure = judged(&[report(0.5), report(2.0)]).unwrap_err();
         assert_eq!(failure.code(), 1);
+    }
+
+    #[test]
+    fn properties_are_known_by_name() {
+        for p in Property::ALL {
+            assert_eq!(property(&p.key()), Ok(p));
+            assert_eq!(property(p.name()), Ok(p));
+        }
+        let e = property("reciprocty").unwrap_err();
+        assert!(e.contains("`reciprocity`"), "{e}");
+        assert!(property("xyz").unwrap_err().contains("sample-density"));
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::cli::failure::Failure;
 use crate::cli::terminal::say;
+use gonio_brdf::CheckOptions;
 use gonio_exec::{Killer, Process, Remote};
 use gonio_report::Section;
-use gonio_verify::{Checker, Effort, Precision, Settings, Subject};
+use gonio_verify::{Checker, Precision, Subject};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::{Duration, Instant};
 
@@ -20,7 +21,11 @@ pub(super) fn seconds(text: &str) -> Result<Duration, String> {
 }
 
 /// Checks what the process that `command` starts evaluates; each answer may take `limit`.
-pub(super) fn check(command: &str, limit: Duration, effort: Effort) -> Result<Section, Failure> {
+pub(super) fn check(
+    command: &str,
+    limit: Duration,
+    options: &CheckOptions,
+) -> Result<Section, Failure> {
     let began = Instant::now();
     let process = Process::start_with(command, limit, end_on_interrupt)?;
     let hello = process.hello().clone();
@@ -34,9 +39,10 @@ pub(super) fn check(command: &str, limit: Duration, effort: Effort) -> Result<Se
 
     let remote = Remote::new(process);
     let subject = Subject::batched(name.clone(), &remote);
-    let settings = Settings::new(effort).with_precision(hello.precision);
-    let report = Checker::new(&subject, &hello.expectation, effort)
+    let settings = options.settings.with_precision(hello.precision);
+    let report = Checker::new(&subject, &hello.expectation, options.effort)
         .settings(settings)
+        .allow(&options.allow)
         .run(&name);
     bar.finish_and_clear();
     // It knows more of what went wrong than the check does.

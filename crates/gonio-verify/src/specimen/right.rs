@@ -1,39 +1,20 @@
-//! Reflection functions that are right, and ways to break them.
+//! Reflection functions that are right, written as plainly as they can be.
 
-// Each test binary uses a part of these.
-#![allow(dead_code)]
-
-use gonio_num::{Frame, Vec3};
-use gonio_verify::{Subject, SubjectSample};
+use super::Pointwise;
+use crate::SubjectSample;
+use crate::directions::{at_height, azimuth};
+use gonio_num::{Frame, Real, Vec3};
 use std::f64::consts::{PI, TAU};
 
-pub type V = Vec3<f64>;
+type V = Vec3<f64>;
 
-/// A reflection function with all three operations.
-pub trait Reflection: Sync {
-    fn eval(&self, wi: V, wo: V) -> [f64; 3];
-    fn pdf(&self, wi: V, wo: V) -> f64;
-    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample>;
-}
-
-/// Runs `body` with `r` as a subject.
-pub fn with_subject<T>(name: &str, r: &dyn Reflection, body: impl FnOnce(&Subject) -> T) -> T {
-    let eval = |wi: V, wo: V| r.eval(wi, wo);
-    let pdf = |wi: V, wo: V| r.pdf(wi, wo);
-    let sample = |wo: V, u: [f64; 3]| r.sample(wo, u);
-    body(
-        &Subject::new(name, &eval)
-            .with_pdf(&pdf)
-            .with_sample(&sample),
-    )
-}
-
+/// Whether both directions are above the horizon.
 pub fn above(wi: V, wo: V) -> bool {
     wi.z > 0.0 && wo.z > 0.0
 }
 
 /// A sample with the weight and density that `r` itself gives.
-pub fn consistent(r: &dyn Reflection, wi: V, wo: V) -> Option<SubjectSample> {
+pub fn consistent(r: &dyn Pointwise, wi: V, wo: V) -> Option<SubjectSample> {
     let pdf = r.pdf(wi, wo);
     (pdf > 0.0).then(|| SubjectSample {
         wi,
@@ -46,7 +27,7 @@ pub fn consistent(r: &dyn Reflection, wi: V, wo: V) -> Option<SubjectSample> {
 /// ρ/π, drawn by the cosine.
 pub struct Lambertian(pub f64);
 
-impl Reflection for Lambertian {
+impl Pointwise for Lambertian {
     fn eval(&self, wi: V, wo: V) -> [f64; 3] {
         let f = if above(wi, wo) { self.0 / PI } else { 0.0 };
         [f, 0.5 * f, 0.25 * f]
@@ -55,7 +36,7 @@ impl Reflection for Lambertian {
         if above(wi, wo) { wi.z / PI } else { 0.0 }
     }
     fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
-        let (sin, cos) = (TAU * u[1]).sin_cos();
+        let (sin, cos): (f64, f64) = Real::sin_cos(TAU * u[1]);
         let r = u[0].sqrt();
         consistent(self, V::new(r * cos, r * sin, (1.0 - u[0]).sqrt()), wo)
     }
@@ -71,23 +52,23 @@ impl Phong {
     }
 }
 
-impl Reflection for Phong {
+impl Pointwise for Phong {
     fn eval(&self, wi: V, wo: V) -> [f64; 3] {
         if !above(wi, wo) {
             return [0.0; 3];
         }
-        [(self.0 + 2.0) / TAU * Self::cos(wi, wo).powf(self.0); 3]
+        [(self.0 + 2.0) / TAU * Real::powf(Self::cos(wi, wo), self.0); 3]
     }
     fn pdf(&self, wi: V, wo: V) -> f64 {
         if !above(wi, wo) {
             return 0.0;
         }
-        (self.0 + 1.0) / TAU * Self::cos(wi, wo).powf(self.0)
+        (self.0 + 1.0) / TAU * Real::powf(Self::cos(wi, wo), self.0)
     }
     fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
-        let cos = (1.0 - u[0]).powf(1.0 / (self.0 + 1.0));
+        let cos: f64 = Real::powf(1.0 - u[0], 1.0 / (self.0 + 1.0));
         let sin = (1.0 - cos * cos).max(0.0).sqrt();
-        let (s, c) = (TAU * u[1]).sin_cos();
+        let (s, c): (f64, f64) = Real::sin_cos(TAU * u[1]);
         let frame = Frame::from_normal(V::new(-wo.x, -wo.y, wo.z));
         consistent(self, frame.to_world(V::new(sin * c, sin * s, cos)), wo)
     }
@@ -95,6 +76,7 @@ impl Reflection for Phong {
 
 /// A white GGX conductor with height-correlated masking, possibly brushed, drawn by its visible normals.
 pub struct Ggx {
+    /// Slope scales along x and y.
     pub alpha: [f64; 2],
 }
 
@@ -110,7 +92,7 @@ impl Ggx {
     }
 }
 
-impl Reflection for Ggx {
+impl Pointwise for Ggx {
     fn eval(&self, wi: V, wo: V) -> [f64; 3] {
         if !above(wi, wo) {
             return [0.0; 3];
@@ -136,7 +118,7 @@ impl Reflection for Ggx {
         let v = V::new(ax * wo.x, ay * wo.y, wo.z).normalize();
         let z = 1.0 - u[1] * (1.0 + v.z);
         let sin = (1.0 - z * z).max(0.0).sqrt();
-        let (s, c) = (TAU * u[0]).sin_cos();
+        let (s, c): (f64, f64) = Real::sin_cos(TAU * u[0]);
         let n = V::new(sin * c, sin * s, z) + v;
         let h = V::new(ax * n.x, ay * n.y, n.z).normalize();
         let wi = wo.reflect(h);
@@ -150,6 +132,7 @@ impl Reflection for Ggx {
 /// An ideal diffuser between two media: whatever arrives leaves evenly to all sides, in equilibrium with radiance n².
 /// f = n(ωr)²/(π (1 + η²)), drawn by the cosine on the side chosen by its share n²/(1 + η²); that of the mean index.
 pub struct Frosted {
+    /// Index of refraction below over that above, each channel.
     pub ior: [f64; 3],
     /// Whether the factor n(ωr)² is there.
     pub scaled: bool,
@@ -162,7 +145,7 @@ impl Frosted {
     }
 }
 
-impl Reflection for Frosted {
+impl Pointwise for Frosted {
     fn eval(&self, wi: V, wo: V) -> [f64; 3] {
         if wi.z == 0.0 || wo.z == 0.0 {
             return [0.0; 3];
@@ -195,7 +178,7 @@ impl Reflection for Frosted {
 /// A perfect mirror, reflecting the fraction given.
 pub struct Mirror(pub f64);
 
-impl Reflection for Mirror {
+impl Pointwise for Mirror {
     fn eval(&self, _: V, _: V) -> [f64; 3] {
         [0.0; 3]
     }
@@ -215,7 +198,7 @@ impl Reflection for Mirror {
 /// Half a mirror and half something else, chosen by the third number.
 pub struct Varnished<R>(pub R);
 
-impl<R: Reflection> Reflection for Varnished<R> {
+impl<R: Pointwise> Pointwise for Varnished<R> {
     fn eval(&self, wi: V, wo: V) -> [f64; 3] {
         self.0.eval(wi, wo).map(|f| 0.5 * f)
     }
@@ -242,7 +225,7 @@ impl<R: Reflection> Reflection for Varnished<R> {
 /// `f` drawn by the cosine, whatever its shape: right, but with large weights where it is sharp.
 pub struct CosineDrawn<R>(pub R);
 
-impl<R: Reflection> Reflection for CosineDrawn<R> {
+impl<R: Pointwise> Pointwise for CosineDrawn<R> {
     fn eval(&self, wi: V, wo: V) -> [f64; 3] {
         self.0.eval(wi, wo)
     }
@@ -258,7 +241,7 @@ impl<R: Reflection> Reflection for CosineDrawn<R> {
 /// A diffuse base and, drawn with probability `.0` only, a sharp lobe.
 pub struct Coated(pub f64, pub Ggx);
 
-impl Reflection for Coated {
+impl Pointwise for Coated {
     fn eval(&self, wi: V, wo: V) -> [f64; 3] {
         let (d, s) = (Lambertian(0.7).eval(wi, wo), self.1.eval(wi, wo));
         [0, 1, 2].map(|k| d[k] + 0.04 * s[k])
@@ -287,13 +270,13 @@ impl Bands {
     fn cell(wi: V, wo: V) -> usize {
         let band = ((wi.z * 4.0) as usize).min(3);
         // At normal incidence φo is that of +x.
-        let (sin, cos) = wo.y.atan2(wo.x).sin_cos();
+        let (sin, cos): (f64, f64) = Real::sin_cos(azimuth(wo));
         let turn = wi.x * sin - wi.y * cos;
         2 * band + usize::from(turn > 0.0)
     }
 }
 
-impl Reflection for Bands {
+impl Pointwise for Bands {
     fn eval(&self, wi: V, wo: V) -> [f64; 3] {
         if !above(wi, wo) {
             return [0.0; 3];
@@ -314,68 +297,7 @@ impl Reflection for Bands {
             cell += 1;
         }
         let z = 0.25 * ((cell / 2) as f64 + u[1]);
-        let azimuth = wo.y.atan2(wo.x) + PI * u[2] * if cell % 2 == 1 { -1.0 } else { 1.0 };
-        let sin = (1.0 - z * z).sqrt();
-        consistent(
-            self,
-            V::new(sin * azimuth.cos(), sin * azimuth.sin(), z),
-            wo,
-        )
-    }
-}
-
-type EvalOf<'a, R> = &'a (dyn Fn(&R, V, V) -> [f64; 3] + Sync);
-type PdfOf<'a, R> = &'a (dyn Fn(&R, V, V) -> f64 + Sync);
-type SampleOf<'a, R> = &'a (dyn Fn(&R, V, [f64; 3]) -> Option<SubjectSample> + Sync);
-
-/// `inner` with some operations replaced.
-pub struct Broken<'a, R> {
-    pub inner: R,
-    pub eval: Option<EvalOf<'a, R>>,
-    pub pdf: Option<PdfOf<'a, R>>,
-    pub sample: Option<SampleOf<'a, R>>,
-}
-
-impl<'a, R: Reflection> Broken<'a, R> {
-    pub fn new(inner: R) -> Self {
-        Self {
-            inner,
-            eval: None,
-            pdf: None,
-            sample: None,
-        }
-    }
-    pub fn eval(mut self, f: EvalOf<'a, R>) -> Self {
-        self.eval = Some(f);
-        self
-    }
-    pub fn pdf(mut self, f: PdfOf<'a, R>) -> Self {
-        self.pdf = Some(f);
-        self
-    }
-    pub fn sample(mut self, f: SampleOf<'a, R>) -> Self {
-        self.sample = Some(f);
-        self
-    }
-}
-
-impl<R: Reflection> Reflection for Broken<'_, R> {
-    fn eval(&self, wi: V, wo: V) -> [f64; 3] {
-        match self.eval {
-            Some(f) => f(&self.inner, wi, wo),
-            None => self.inner.eval(wi, wo),
-        }
-    }
-    fn pdf(&self, wi: V, wo: V) -> f64 {
-        match self.pdf {
-            Some(f) => f(&self.inner, wi, wo),
-            None => self.inner.pdf(wi, wo),
-        }
-    }
-    fn sample(&self, wo: V, u: [f64; 3]) -> Option<SubjectSample> {
-        match self.sample {
-            Some(f) => f(&self.inner, wo, u),
-            None => self.inner.sample(wo, u),
-        }
+        let azimuth = azimuth(wo) + PI * u[2] * if cell % 2 == 1 { -1.0 } else { 1.0 };
+        consistent(self, at_height(z, azimuth), wo)
     }
 }
