@@ -1,7 +1,10 @@
 //! Each kind of plot of functions that are written here: `cargo run -p gonio-plot --example gallery -- FOLDER`.
 
 use gonio_num::Vec3;
-use gonio_plot::{Channel, Draw, Figure, Function, Options, PlotError, albedo, cartesian, polar};
+use gonio_plot::{
+    Channel, Draw, Figure, Function, Options, PlotError, albedo, cartesian, difference, polar,
+    slice, sphere,
+};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -102,5 +105,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         albedo(&[paint(), gold(0.1), gold(0.5), gold(1.0)], &usual),
     )?;
     write("albedo-pane", albedo(&[glass()], &usual))?;
+    write("slice-gold", slice(&[gold(0.4)], &usual))?;
+    write(
+        "slice-several",
+        slice(&[paint(), gold(0.1), gold(0.3), gold(0.6)], &rgb),
+    )?;
+    write("difference", difference(&[gold(0.3), gold(0.35)], &usual))?;
+    write("sphere-gold", sphere(&[gold(0.4)], &usual))?;
+    write(
+        "sphere-several",
+        sphere(&[paint(), gold(0.1), gold(0.3), gold(0.6)], &usual),
+    )?;
     Ok(())
 }

@@ -9,8 +9,11 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 use plotters::prelude::ChartBuilder;
 
 /// Room for the labels left of a chart and below it.
-const LEFT: f64 = 66.0;
-const BELOW: f64 = 46.0;
+pub(crate) const LEFT: f64 = 66.0;
+pub(crate) const BELOW: f64 = 46.0;
+/// Room for halves of labels above a chart and right of it.
+pub(crate) const ABOVE: f64 = 8.0;
+pub(crate) const RIGHT: f64 = 14.0;
 
 /// A straight axis in whole steps.
 pub(crate) struct Steps {
@@ -40,10 +43,10 @@ pub(crate) fn axes(
     (y, y_words): (&Scale, &str),
 ) -> Place {
     let (x, y) = (Axis::of_steps(x), Axis::of_scale(y));
-    draw(canvas, place, (x, x_words), (y, y_words))
+    draw(canvas, place, (x, x_words), (y, y_words), true)
 }
 
-/// As [`axes`], with steps along both.
+/// As [`axes`], with steps along both and no lines between: for a picture.
 pub(crate) fn degrees(
     canvas: &Canvas,
     place: Place,
@@ -51,7 +54,7 @@ pub(crate) fn degrees(
     (y, y_words): (&Steps, &str),
 ) -> Place {
     let (x, y) = (Axis::of_steps(x), Axis::of_steps(y));
-    draw(canvas, place, (x, x_words), (y, y_words))
+    draw(canvas, place, (x, x_words), (y, y_words), false)
 }
 
 fn angle(degrees: f64) -> String {
@@ -126,17 +129,26 @@ fn draw(
     place: Place,
     (x, x_words): (Axis, &str),
     (y, y_words): (Axis, &str),
+    lines: bool,
 ) -> Place {
     let [left, top, w, h] = place;
-    let inner = [left + LEFT, top + 8.0, w - LEFT - 14.0, h - BELOW - 8.0];
+    let inner = [
+        left + LEFT,
+        top + ABOVE,
+        w - LEFT - RIGHT,
+        h - BELOW - ABOVE,
+    ];
     let area = canvas.part([left, inner[1], LEFT + inner[2], inner[3] + BELOW]);
     let chart = ChartBuilder::on(&area)
         .x_label_area_size(unit(BELOW))
         .y_label_area_size(unit(LEFT))
         .build_cartesian_2d(x, y);
     if let Ok(mut chart) = chart {
-        let mesh = chart
-            .configure_mesh()
+        let mut mesh = chart.configure_mesh();
+        if !lines {
+            mesh.disable_mesh();
+        }
+        let drawn = mesh
             .bold_line_style(style(Stroke::new(GRID, 1.0)))
             .light_line_style(style(Stroke::new(FAINT, 1.0)))
             .axis_style(style(Stroke::new(INK, 1.2)))
@@ -146,7 +158,7 @@ fn draw(
             .x_desc(x_words)
             .y_desc(y_words)
             .draw();
-        done(mesh);
+        done(drawn);
     }
     inner
 }

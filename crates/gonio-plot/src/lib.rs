@@ -14,10 +14,13 @@
 #![allow(dead_code)]
 
 mod albedo;
+mod ball;
 mod canvas;
 mod cartesian;
 mod chart;
+mod colours;
 mod curves;
+mod difference;
 mod error;
 mod figure;
 mod font;
@@ -28,10 +31,13 @@ mod page;
 mod png;
 mod polar;
 mod scale;
+mod slice;
 mod trace;
 
 pub use albedo::albedo;
+pub use ball::{Picture, picture_side, pictures, sphere};
 pub use cartesian::cartesian;
+pub use difference::difference;
 pub use error::PlotError;
 pub use figure::Figure;
 pub use function::{Draw, Function};
@@ -39,6 +45,7 @@ pub use options::{Channel, MOST_ANGLES, MOST_FUNCTIONS, Options};
 pub use png::MOST_PIXELS;
 pub use polar::polar;
 pub use scale::ScaleKind;
+pub use slice::slice;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
