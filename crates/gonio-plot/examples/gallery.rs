@@ -2,8 +2,8 @@
 
 use gonio_num::Vec3;
 use gonio_plot::{
-    Channel, Draw, Figure, Function, Options, PlotError, albedo, cartesian, difference, polar,
-    slice, sphere,
+    Channel, Draw, Figure, Function, Options, PlotError, albedo, cartesian, difference, lobe3d,
+    polar, slice, sphere,
 };
 use std::f64::consts::PI;
 use std::path::Path;
@@ -115,6 +115,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     write(
         "sphere-several",
         sphere(&[paint(), gold(0.1), gold(0.3), gold(0.6)], &usual),
+    )?;
+    write("lobe3d-gold", lobe3d(&[gold(0.4)], &usual))?;
+    write("lobe3d-paint", lobe3d(&[paint()], &cosine))?;
+    write(
+        "lobe3d-several",
+        lobe3d(&[paint(), gold(0.02), gold(0.3), gold(0.6)], &rgb),
     )?;
     Ok(())
 }

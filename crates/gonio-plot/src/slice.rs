@@ -18,8 +18,8 @@ const STEEPEST: f64 = 89.9;
 /// for the MERL materials by Burley 2012, §3).
 ///
 /// A highlight is at the left edge, the Fresnel effect at the top left, retro-reflection along the bottom, grazing directions at the right and
-/// at the top. The colour is false, or with [`Channel::Rgb`] the function's own, on one scale for all, logarithmic unless
-/// [`Options::scale`] says otherwise. Values stand at every half degree, the first at 0.
+/// at the top. The colour is false, or with [`Channel::Rgb`] the function's own, on one scale for all: logarithmic for one
+/// number, the cube root for colours, unless [`Options::scale`] says otherwise. It holds 98 % of the values; those above are shown as its end. Values stand at every half degree, the first at 0.
 ///
 /// # Errors
 /// [`PlotError::Count`] unless there are 1 to 8 functions; [`PlotError::Nothing`] for one that is 0 everywhere, as a mirror is;
@@ -174,21 +174,30 @@ fn finite(colour: &[f64; 3]) -> bool {
     colour.iter().all(|x| x.is_finite())
 }
 
+/// The share of a slice's values that its scale is to hold; the few above it, at grazing angles, are shown as its end.
+const HELD: f64 = 0.98;
+
 /// The scale of all slices.
 fn scale(sampled: &[Vec<[f64; 3]>], options: &Options) -> Scale {
     let (mut least, mut most) = (f64::INFINITY, 0.0);
-    for colour in sampled.iter().flatten() {
-        for w in options.channel.weights() {
-            let x = crate::options::weighted(*w, *colour);
-            if x > 0.0 && x.is_finite() {
-                least = x.min(least);
-                most = x.max(most);
-            }
+    for values in sampled {
+        let weights = options.channel.weights();
+        let numbers = weights.iter().flat_map(|w| {
+            let all = values.iter();
+            all.map(|colour| crate::options::weighted(*w, *colour))
+        });
+        let mut numbers: Vec<f64> = numbers.filter(|x| *x > 0.0 && x.is_finite()).collect();
+        numbers.sort_by(f64::total_cmp);
+        if let (Some(first), Some(last)) = (numbers.first(), numbers.len().checked_sub(1)) {
+            least = first.min(least);
+            most = numbers[(HELD * last as f64) as usize].max(most);
         }
     }
-    let kind = match options.scale {
-        ScaleKind::Auto => ScaleKind::Log,
-        kind => kind,
+    let kind = match (options.scale, options.channel) {
+        // Near to what a display's transfer does: the colours look as they would.
+        (ScaleKind::Auto, Channel::Rgb) => ScaleKind::CubeRoot,
+        (ScaleKind::Auto, _) => ScaleKind::Log,
+        (kind, _) => kind,
     };
     Scale::new(kind, least, most, false)
 }
