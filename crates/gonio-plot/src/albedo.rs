@@ -24,7 +24,7 @@ const FLATNESS: f64 = 0.4;
 ///
 /// a(θ) = ∫ f cosθi dωi, the fraction of a beam that leaves the surface again; Dirac deltas are included, and for what transmits also what
 /// passes to the other side (the part that is reflected is then drawn beside it, dashed). What is missing to 1 is lost; more than 1 isn't
-/// physical. The quadrature's error is below 0.0002 unless a note says otherwise.
+/// physical. The quadrature's error is below 0.002 unless a note says otherwise.
 ///
 /// # Errors
 /// [`PlotError::Count`] unless there are 1 to 8 functions; [`PlotError::Option`].

@@ -173,14 +173,6 @@ impl Canvas {
         self.line(&corners, stroke);
     }
 
-    pub fn dot(&self, [x, y]: [f64; 2], radius: f64, colour: Colour) {
-        let look = rgb(colour).filled();
-        done(
-            self.area
-                .draw(&Circle::new((unit(x), unit(y)), unit(radius), look)),
-        );
-    }
-
     pub fn text(&self, words: &str, [x, y]: [f64; 2], look: Look) {
         {
             let mut page = self.page.borrow_mut();

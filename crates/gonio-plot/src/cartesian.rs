@@ -44,6 +44,7 @@ pub fn cartesian(functions: &[Function], options: &Options) -> Result<Figure, Pl
     let canvas = Canvas::new(size);
     let title = figure::title(functions, options);
     let mut notes: Vec<String> = figure::gaps_note(curves.gaps()).into_iter().collect();
+    notes.extend(curves.beyond_note(options));
     if curves.discrete() {
         notes.push(
             "Arrow: a Dirac delta, a discrete direction with the share of the light that goes there."

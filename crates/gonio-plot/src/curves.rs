@@ -118,6 +118,21 @@ impl Curves {
         strokes.any(|(c, s)| s.iter().any(|(_, w)| c.trace.peak(&[*w]).is_some()))
     }
 
+    /// The note on values that are beyond the end of the axis.
+    pub fn beyond_note(&self, options: &Options) -> Option<String> {
+        let peaks = self.all.iter();
+        let (t, most) = peaks
+            .filter_map(|c| c.trace.peak(options.channel.weights()))
+            .max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (most > self.scale.high * (1.0 + 1e-9)).then(|| {
+            format!(
+                "Near the horizon values reach {} sr⁻¹, at {}°: they are cut off.",
+                number(most),
+                number(t)
+            )
+        })
+    }
+
     /// Whether there are discrete directions.
     pub fn discrete(&self) -> bool {
         self.all.iter().any(|c| !c.spikes.is_empty())
@@ -187,39 +202,52 @@ fn spikes(f: &Function, options: &Options, theta: f64) -> Vec<(f64, [f64; 3])> {
     f.spikes(wi).iter().filter_map(in_plane).collect()
 }
 
+/// Directions nearer to the horizon than this, degrees, make no axis longer than three times what the others need: there a function may grow
+/// without bound, and nothing else would be seen.
+const GRAZING: f64 = 5.0;
+
 /// The axis on which all can be read.
 fn scale(all: &[Curve], weights: &[[f64; 3]], kind: ScaleKind, auto: ScaleKind) -> Scale {
-    let peaks: Vec<f64> = all
-        .iter()
-        .filter_map(|c| c.trace.peak(weights))
-        .map(|(_, x)| x)
-        .collect();
-    let most = peaks.iter().copied().fold(0.0, f64::max);
-    let lowest = peaks.iter().copied().fold(f64::INFINITY, f64::min);
-    let thin = lowest < 0.2 * most
-        || all.iter().any(|c| {
-            let peak = c.trace.peak(weights).map_or(0.0, |(_, x)| x);
-            peak > 0.0 && c.trace.width_above(weights, 0.1 * peak) < 30.0
-        });
-    // Grazing directions, where a cosine takes everything to 0, don't make the axis longer.
-    let mut least = f64::INFINITY;
-    for curve in all {
-        let steep = |t: f64| Real::cos(t.to_radians()).abs() < 0.15;
-        for (_, colour) in curve.trace.points.iter().filter(|(t, _)| !steep(*t)) {
+    let grazing = |t: f64| (t.abs() - 90.0).abs() < GRAZING;
+    let range_of = |curve: &Curve, all_angles: bool| {
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        for (t, colour) in &curve.trace.points {
+            if grazing(*t) && !all_angles {
+                continue;
+            }
             for w in weights {
                 let x = weighted(*w, *colour);
-                if x > 0.0 && x < least {
-                    least = x;
+                if x > 0.0 && x.is_finite() {
+                    (least, most) = (least.min(x), most.max(x));
                 }
             }
         }
-    }
+        (least, most)
+    };
+    let ranges: Vec<(f64, f64)> = all.iter().map(|c| range_of(c, false)).collect();
+    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let most = largest(&mut ranges.iter().map(|r| r.1));
+    let with_grazing = largest(&mut all.iter().map(|c| range_of(c, true).1));
+    let peaks = ranges.iter().map(|r| r.1).filter(|x| *x > 0.0);
+    let lowest = peaks.fold(f64::INFINITY, f64::min);
+    let thin = lowest < 0.2 * most
+        || all
+            .iter()
+            .zip(&ranges)
+            .any(|(c, (_, peak))| *peak > 0.0 && c.trace.width_above(weights, 0.1 * peak) < 30.0);
+    // Grazing directions, where a cosine takes everything to 0, don't make the axis begin lower either.
+    let least = ranges.iter().map(|r| r.0).fold(f64::INFINITY, f64::min);
     let kind = match kind {
         ScaleKind::Auto if thin => auto,
         ScaleKind::Auto => ScaleKind::Linear,
         kind => kind,
     };
-    Scale::new(kind, least, most, false)
+    let end = if kind == ScaleKind::Log || with_grazing < 3.0 * most || most == 0.0 {
+        with_grazing
+    } else {
+        most
+    };
+    Scale::new(kind, least, end, false)
 }
 
 /// Red, green and blue that differ to all eyes by their lightness, too.
@@ -243,7 +271,15 @@ fn strokes(
     if channel == Channel::Rgb {
         let colours = CHANNELS.iter().zip(weights);
         return colours
-            .map(|((colour, _), w)| (stroke(*colour, angle), *w))
+            .zip([4.0, 2.6, 1.3])
+            .map(|(((colour, _), w), width)| {
+                // Each is seen under the next where they are the same.
+                let stroke = Stroke {
+                    width,
+                    ..stroke(*colour, angle)
+                };
+                (stroke, *w)
+            })
             .collect();
     }
     let look = match (functions, angles) {

@@ -25,7 +25,7 @@ pub struct Draw {
 pub struct Spike {
     /// Towards the viewer, unit, local frame.
     pub wo: Vec3<f64>,
-    /// What becomes of radiance 1 that arrives, each channel.
+    /// The share of the light that leaves there, each channel: of radiance in units of n².
     pub share: [f64; 3],
 }
 
@@ -142,7 +142,8 @@ impl<'a> Function<'a> {
                 .iter()
                 .find(|d| d.wi.dot(wi) > 1.0 - 1e-9)
             {
-                let share = back.weight.map(|w| w * back.probability);
+                let (from, to) = (self.index_squared(wi), self.index_squared(ahead.wi));
+                let share = [0, 1, 2].map(|k| back.weight[k] * back.probability * from[k] / to[k]);
                 found.push(Spike {
                     wo: ahead.wi,
                     share,

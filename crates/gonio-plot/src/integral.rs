@@ -19,7 +19,7 @@ pub(crate) struct Albedo {
 }
 
 /// The quadrature ends at this difference between two steps: less than a curve's width in a chart of albedos.
-const TOLERANCE: f64 = 2e-4;
+const TOLERANCE: f64 = 5e-4;
 /// Nodes in each piece along each angle, step by step.
 const NODES: [usize; 4] = [3, 5, 8, 12];
 /// The narrowest pieces, radians: along θ half as wide as the sharpest lobes (α = 1e-4), along φ by as much narrower as such a lobe is across the

@@ -8,10 +8,13 @@
 //! | [`polar()`] | the lobes in the plane of incidence |
 //! | [`cartesian()`] | the value against the angle of reflection |
 //! | [`albedo()`] | the directional albedo against the angle of incidence |
+//! | [`slice()`] | a picture of f by half and difference angle |
+//! | [`lobe3d()`] | the lobe in space |
+//! | [`sphere()`] | a ball under a point light |
+//! | [`difference()`] | by how much the second of two functions differs from the first |
+//! | [`pictures()`] | pictures that somebody else has rendered, side by side |
 //!
 //! The same functions and options give the same bytes on every machine.
-
-#![allow(dead_code)]
 
 mod albedo;
 mod ball;

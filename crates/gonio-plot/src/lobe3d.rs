@@ -51,7 +51,10 @@ pub fn lobe3d(functions: &[Function], options: &Options) -> Result<Figure, PlotE
     let scale = scale(&meshes, options, &value);
     let transmits = functions.iter().any(Function::transmits) || theta > 90.0;
 
-    let canvas = Canvas::new(options.page_size(colours::page(functions.len(), 0.0)));
+    let canvas = Canvas::new(options.page_size(match functions.len() {
+        1 => [600.0, if transmits { 640.0 } else { 500.0 }],
+        count => colours::page(count, 0.0),
+    }));
     let title = figure::title(functions, options);
     let gaps = |m: &Mesh| {
         m.corners
@@ -209,6 +212,12 @@ impl Shown<'_> {
             for k in t {
                 normals[*k as usize] += n;
             }
+        }
+        // A needle thinner than the picture's samples is still to be seen.
+        let radius = |p: &&Vec3<f64>| p.length();
+        let tip = places.iter().max_by(|a, b| radius(a).total_cmp(&radius(b)));
+        if let Some(tip) = tip {
+            depth.line(&[*tip * 0.0, *tip], self.colour, 1.4);
         }
         for t in &mesh.triangles {
             let corners = t.map(|k| Corner {

@@ -19,7 +19,8 @@ const STEEPEST: f64 = 89.9;
 ///
 /// A highlight is at the left edge, the Fresnel effect at the top left, retro-reflection along the bottom, grazing directions at the right and
 /// at the top. The colour is false, or with [`Channel::Rgb`] the function's own, on one scale for all: logarithmic for one
-/// number, the cube root for colours, unless [`Options::scale`] says otherwise. It holds 98 % of the values; those above are shown as its end. Values stand at every half degree, the first at 0.
+/// number, the cube root for colours, unless [`Options::scale`] says otherwise. It holds 98 % of the
+/// values, 95 % of those of colours; the others are shown as its end. Values stand at every half degree, the first at 0.
 ///
 /// # Errors
 /// [`PlotError::Count`] unless there are 1 to 8 functions; [`PlotError::Nothing`] for one that is 0 everywhere, as a mirror is;
@@ -174,14 +175,16 @@ fn finite(colour: &[f64; 3]) -> bool {
     colour.iter().all(|x| x.is_finite())
 }
 
-/// The share of a slice's values that its scale is to hold; the few above it, at grazing angles, are shown as its end.
-const HELD: f64 = 0.98;
+/// The share of a slice's values that its scale is to hold, of one number and of colours; the few above it, at grazing angles, are shown as its
+/// end.
+const HELD: [f64; 2] = [0.98, 0.95];
 
 /// The scale of all slices.
 fn scale(sampled: &[Vec<[f64; 3]>], options: &Options) -> Scale {
     let (mut least, mut most) = (f64::INFINITY, 0.0);
     for values in sampled {
         let weights = options.channel.weights();
+        let held = HELD[usize::from(weights.len() > 1)];
         let numbers = weights.iter().flat_map(|w| {
             let all = values.iter();
             all.map(|colour| crate::options::weighted(*w, *colour))
@@ -190,7 +193,7 @@ fn scale(sampled: &[Vec<[f64; 3]>], options: &Options) -> Scale {
         numbers.sort_by(f64::total_cmp);
         if let (Some(first), Some(last)) = (numbers.first(), numbers.len().checked_sub(1)) {
             least = first.min(least);
-            most = numbers[(HELD * last as f64) as usize].max(most);
+            most = numbers[(held * last as f64) as usize].max(most);
         }
     }
     let kind = match (options.scale, options.channel) {

@@ -1,20 +1,24 @@
 //! `gonio brdf plot`.
 
+mod lit;
+mod subject;
+
 use crate::cli::destination;
 use crate::cli::failure::Failure;
 use crate::cli::parse;
-use crate::cli::terminal::warn;
-use gonio_brdf::measured::format::FORMATS;
-use gonio_brdf::{Brdf, Model, ModelSpec};
-use gonio_plot::{Channel, Draw, Figure, Function, MOST_FUNCTIONS, Options, PlotError, ScaleKind};
+use crate::cli::terminal::note;
+use gonio_plot::{Channel, Figure, Function, MOST_FUNCTIONS, Options, PlotError, ScaleKind};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
+use subject::Subject;
 
 pub(super) const HELP: &str = "Examples:\n  gonio brdf plot ggx:metal=gold,roughness=0.3 -o gold.svg\n  \
     gonio brdf plot oren-nayar lambertian --kind cartesian --theta 60 -o rough.svg\n  \
-    gonio brdf plot disney openpbr gltf --kind albedo -o albedo.png\n\n\
-    Light comes from the left, at each --theta from the normal. An SVG describes what it shows in words, too.";
+    gonio brdf plot disney openpbr gltf --kind albedo -o albedo.png\n  \
+    gonio brdf plot gold-paint.binary ward@gold-paint --kind difference -o fit.svg\n  \
+    gonio brdf plot ggx:roughness=0.1 ggx:roughness=0.5 --kind sphere --light panorama -o balls.png\n\n\
+    Light comes from the left, at each --theta from the normal. An SVG says in words what it shows, too.";
 
 /// The extensions of plots.
 const EXTENSIONS: [&str; 2] = ["svg", "png"];
@@ -36,6 +40,12 @@ pub(in crate::cli) struct Arguments {
     /// Azimuth of the plane of incidence in degrees, for what isn't isotropic
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = number, allow_hyphen_values = true)]
     phi: f64,
+    /// φd of a slice in degrees
+    #[arg(long, value_name = "DEG", default_value = "90", value_parser = number, allow_hyphen_values = true)]
+    phi_d: f64,
+    /// Light of a sphere: point, panorama (the embedded one), a panorama's file, or uniform:RADIANCE
+    #[arg(long, value_name = "LIGHT", default_value = "point")]
+    light: String,
     /// Which number a colour becomes: luminance, red, green, blue, or rgb for all three
     #[arg(long, value_name = "CHANNEL", default_value = "luminance", value_parser = parse::words(&Channel::ALL))]
     channel: Channel,
@@ -64,6 +74,14 @@ enum Kind {
     Cartesian,
     /// The fraction of light that leaves again, against the angle
     Albedo,
+    /// A picture of f by half and difference angle, as MERL's materials are shown
+    Slice,
+    /// The lobe in space, for the first --theta
+    Lobe3d,
+    /// A lit ball
+    Sphere,
+    /// By how much the second of two differs from the first
+    Difference,
 }
 
 /// A finite number.
@@ -86,7 +104,6 @@ pub(super) fn run(arguments: Arguments) -> Result<(), Failure> {
         .iter()
         .map(|text| Subject::open(text))
         .collect::<Result<_, _>>()?;
-    let functions: Vec<Function> = subjects.iter().map(Subject::function).collect();
     let options = Options {
         size: arguments.size,
         title: arguments.title.clone(),
@@ -95,19 +112,34 @@ pub(super) fn run(arguments: Arguments) -> Result<(), Failure> {
         channel: arguments.channel,
         scale: arguments.scale,
         cosine: arguments.cosine,
-        ..Options::default()
+        phi_d_deg: arguments.phi_d,
     };
-    let spinner = spinner();
+    let bar = bar();
+    let figure = draw(&arguments, &subjects, &options, &bar);
+    bar.finish_and_clear();
+    write(&figure?, &arguments)
+}
+
+fn draw(
+    arguments: &Arguments,
+    subjects: &[Subject],
+    options: &Options,
+    bar: &ProgressBar,
+) -> Result<Figure, Failure> {
+    if arguments.kind == Kind::Sphere && arguments.light != "point" {
+        return lit::sphere(subjects, options, &arguments.light, bar);
+    }
+    let functions: Vec<Function> = subjects.iter().map(Subject::function).collect();
     let figure = match arguments.kind {
-        Kind::Polar => gonio_plot::polar(&functions, &options),
-        Kind::Cartesian => gonio_plot::cartesian(&functions, &options),
-        Kind::Albedo => gonio_plot::albedo(&functions, &options),
+        Kind::Polar => gonio_plot::polar(&functions, options),
+        Kind::Cartesian => gonio_plot::cartesian(&functions, options),
+        Kind::Albedo => gonio_plot::albedo(&functions, options),
+        Kind::Slice => gonio_plot::slice(&functions, options),
+        Kind::Lobe3d => gonio_plot::lobe3d(&functions, options),
+        Kind::Sphere => gonio_plot::sphere(&functions, options),
+        Kind::Difference => gonio_plot::difference(&functions, options),
     };
-    let written = figure
-        .map_err(Failure::from)
-        .and_then(|figure| write(&figure, &arguments));
-    spinner.finish_and_clear();
-    written
+    Ok(figure?)
 }
 
 fn write(figure: &Figure, arguments: &Arguments) -> Result<(), Failure> {
@@ -119,16 +151,16 @@ fn write(figure: &Figure, arguments: &Arguments) -> Result<(), Failure> {
         figure.svg().as_bytes()
     };
     gonio_image::write_file(&arguments.output, bytes)?;
-    for note in figure.notes() {
-        warn(note);
+    for words in figure.notes() {
+        note(words);
     }
     Ok(())
 }
 
 /// A sign of life on standard error, when that is a terminal and the work takes a second.
-fn spinner() -> ProgressBar {
+fn bar() -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{spinner:.cyan} drawing, {elapsed}") {
+    if let Ok(style) = ProgressStyle::with_template("{spinner:.cyan} drawing, {elapsed}  {msg}") {
         bar.set_style(style);
     }
     let started = bar.downgrade();
@@ -141,58 +173,6 @@ fn spinner() -> ProgressBar {
         }
     });
     bar
-}
-
-/// A function by its description.
-struct Subject {
-    name: String,
-    model: Model<f64, 3>,
-    relative_ior: Option<[f64; 3]>,
-}
-
-impl Subject {
-    /// The measured file `text`, if there is one of that name, or else the model that it describes.
-    fn open(text: &str) -> Result<Self, Failure> {
-        let path = Path::new(text);
-        let extension = destination::extension(path);
-        let measured = FORMATS.iter().any(|f| f.extension == extension);
-        let file = path.exists() || (measured && !text.contains(['(', '=']));
-        let spec = if file {
-            ModelSpec::from_pairs("table", [("file", text)])?
-        } else {
-            ModelSpec::parse(text)?
-        };
-        let model: Model<f64, 3> = spec.build()?;
-        for line in model.warnings() {
-            warn(&format!("{text}: {line}"));
-        }
-        let name = match path.file_name() {
-            Some(name) if file => name.to_string_lossy().into_owned(),
-            _ => text.trim().into(),
-        };
-        Ok(Self {
-            name,
-            model,
-            relative_ior: spec.declares()?.relative_ior,
-        })
-    }
-
-    fn function(&self) -> Function<'_> {
-        let model = &self.model;
-        let function =
-            Function::new(&self.name, |wi, wo| model.eval(wi, wo)).with_discrete(|wo, u| {
-                let s = model.sample(wo, u);
-                (s.pdf > 0.0 && s.delta).then_some(Draw {
-                    wi: s.wi,
-                    weight: s.weight,
-                    probability: s.pdf,
-                })
-            });
-        match self.relative_ior {
-            Some(ior) => function.transmitting(ior),
-            None => function,
-        }
-    }
 }
 
 impl From<PlotError> for Failure {
