@@ -214,12 +214,13 @@ fn row(v: &Verdict) -> String {
     )
 }
 
-/// With a capital letter, if it begins with a small one of the Latin alphabet.
+/// With a capital letter, if it begins with a word of small Latin letters: `f` and `wi` are symbols.
 fn sentence(text: &str) -> String {
-    let mut chars = text.chars();
-    match chars.next() {
-        Some(c) if c.is_ascii_lowercase() && !text.starts_with("f(") => {
-            c.to_ascii_uppercase().to_string() + chars.as_str()
+    let word: String = text.chars().take_while(char::is_ascii_alphabetic).collect();
+    let symbol = ["f", "wi", "wo", "pdf", "weight"].contains(&word.as_str());
+    match text.chars().next() {
+        Some(c) if c.is_ascii_lowercase() && !symbol => {
+            c.to_ascii_uppercase().to_string() + &text[1..]
         }
         _ => text.into(),
     }

@@ -114,6 +114,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             command,
             arguments.exec_timeout,
             &arguments.options(),
+            arguments.files.shows_plots(),
         )?],
         (None, Some(spec)) => named(spec, arguments)?,
         // The parser asks for one of both.
@@ -162,7 +163,8 @@ fn named(text: &str, arguments: &Arguments) -> Result<Vec<Section>, Failure> {
             };
             bar.0.suspend(|| print(&text))?;
         }
-        sections.push(files::section(spec, report, began.elapsed())?);
+        let plots = arguments.files.shows_plots();
+        sections.push(files::section(spec, report, began.elapsed(), plots)?);
     }
     bar.0.finish_and_clear();
     Ok(sections)

@@ -1,5 +1,6 @@
 //! `gonio brdf check --exec`: a reflection function that another program evaluates.
 
+use super::pictures;
 use crate::cli::failure::Failure;
 use crate::cli::terminal::say;
 use gonio_brdf::CheckOptions;
@@ -20,11 +21,12 @@ pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// Checks what the process that `command` starts evaluates; each answer may take `limit`.
+/// Checks what the process that `command` starts evaluates, with plots if they are to be shown; each answer may take `limit`.
 pub(super) fn check(
     command: &str,
     limit: Duration,
     options: &CheckOptions,
+    plots: bool,
 ) -> Result<Section, Failure> {
     let began = Instant::now();
     let process = Process::start_with(command, limit, end_on_interrupt)?;
@@ -44,12 +46,17 @@ pub(super) fn check(
         .settings(settings)
         .allow(&options.allow)
         .run(&name);
+    let drawn = match plots && report.is_ok() {
+        true => pictures::of_reflection(&name, &remote)?,
+        false => Vec::new(),
+    };
     bar.finish_and_clear();
     // It knows more of what went wrong than the check does.
     remote.finish()?;
     let report = report.map_err(gonio_brdf::BrdfError::from)?;
 
     let mut section = Section::new(report, hello.expectation);
+    section.plots = drawn;
     section.seconds = began.elapsed().as_secs_f64();
     section.facts = vec![("Program".into(), command.trim().into())];
     for (key, value) in &hello.parameters {

@@ -1,8 +1,9 @@
 //! `--junit` and `--html`: verdicts as files.
 
+use super::pictures;
 use crate::cli::destination;
 use crate::cli::failure::Failure;
-use gonio_brdf::ModelSpec;
+use gonio_brdf::{Model, ModelSpec};
 use gonio_report::{self as report, Document, Section};
 use gonio_verify::{Expectation, Report};
 use std::path::PathBuf;
@@ -36,6 +37,11 @@ impl Files {
         Ok(())
     }
 
+    /// Whether there is a page that shows plots.
+    pub(super) fn shows_plots(&self) -> bool {
+        self.html.is_some()
+    }
+
     /// Writes them, each whole or not at all. `command` gives the same verdicts.
     pub(super) fn write(&self, sections: Vec<Section>, command: &str) -> Result<(), Failure> {
         let document = Document {
@@ -53,11 +59,12 @@ impl Files {
     }
 }
 
-/// What a report says of a model of the registry.
+/// What a report says of a model of the registry, with plots if they are to be shown.
 pub(super) fn section(
     spec: &ModelSpec,
     report: Report,
     took: Duration,
+    plots: bool,
 ) -> Result<Section, Failure> {
     let declares = spec.declares()?;
     let expectation = Expectation {
@@ -79,6 +86,10 @@ pub(super) fn section(
         .collect();
     if !values.is_empty() {
         section.facts.push(("Parameters".into(), values.join(", ")));
+    }
+    if plots {
+        let model: Model<f64, 3> = spec.build()?;
+        section.plots = pictures::of_model(&spec.to_string(), &model, declares.relative_ior)?;
     }
     Ok(section)
 }

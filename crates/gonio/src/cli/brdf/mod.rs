@@ -5,6 +5,7 @@ mod convert;
 mod exec;
 mod files;
 mod info;
+mod pictures;
 mod plot;
 
 use super::failure::Failure;
