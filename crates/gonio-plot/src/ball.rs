@@ -9,8 +9,8 @@ use gonio_image::tonemap::{ToneMap, encode_srgb8};
 use gonio_num::{Real, Vec3};
 use std::f64::consts::PI;
 
-/// Pixels of a picture along each side for each of the page, so that a PNG of twice the size is sharp.
-const DENSITY: f64 = 2.0;
+/// Pixels of a picture along each side for each of the page, so that a PNG of a higher density is sharp.
+const DENSITY: f64 = 1.5;
 /// Samples of a pixel along each side.
 const SAMPLES: usize = 2;
 /// Behind the ball, linear.

@@ -106,7 +106,8 @@ impl Depth {
         let radius = 0.5 * width * SAMPLES as f64;
         for pair in points.windows(2) {
             let (a, b) = (self.project(pair[0]), self.project(pair[1]));
-            let length = ((b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)).sqrt();
+            let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+            let length = (dx * dx + dy * dy).sqrt();
             let steps = (2.0 * length).ceil().max(1.0) as usize;
             for k in 0..=steps {
                 let t = k as f64 / steps as f64;
@@ -165,6 +166,6 @@ fn shaded(
     let light = (towards * 0.75 + up * 0.55 - right * 0.45).normalize();
     let diffuse = 0.42 + 0.58 * n.dot(light).max(0.0);
     let half = (light + towards).normalize();
-    let gloss = 0.16 * n.dot(half).max(0.0).powi(40);
+    let gloss = 0.16 * Real::powf(n.dot(half).max(0.0), 40.0);
     colour.map(|c| (c * diffuse as f32 + gloss as f32).min(1.0))
 }

@@ -39,7 +39,7 @@ pub(crate) fn albedo(f: &Function, wo: Vec3<f64>) -> Albedo {
         let apart = |k: usize| (next.total[k] - last.total[k]).abs();
         next.error = apart(0).max(apart(1)).max(apart(2));
         last = next;
-        if last.error < TOLERANCE {
+        if last.error < TOLERANCE || last.gaps > 0 {
             break;
         }
     }

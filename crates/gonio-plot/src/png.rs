@@ -15,7 +15,7 @@ pub const MOST_PIXELS: u64 = 100_000_000;
 /// Opaque sRGB as a PNG file.
 pub(crate) fn encode(size: [u32; 2], rgb: &[u8]) -> Vec<u8> {
     let mut out = Vec::new();
-    PngEncoder::new_with_quality(&mut out, CompressionType::Best, FilterType::Adaptive)
+    PngEncoder::new_with_quality(&mut out, CompressionType::Default, FilterType::Adaptive)
         .write_image(rgb, size[0], size[1], ExtendedColorType::Rgb8)
         .expect("invariant: the picture has three bytes a pixel, and memory takes them");
     out

@@ -8,6 +8,8 @@ mod lamp;
 mod own_function;
 #[path = "../examples/panorama.rs"]
 mod panorama;
+#[path = "../examples/plots.rs"]
+mod plots;
 #[path = "../examples/sphere.rs"]
 mod sphere;
 
@@ -51,4 +53,29 @@ fn the_lamp_agrees_with_its_closed_form() {
         "{reading:?} {exact}"
     );
     assert!(error < 0.02 * exact);
+}
+
+#[test]
+fn the_plots_of_the_book_are_up_to_date() {
+    let folder = plots::folder();
+    let mut expected = Vec::new();
+    for (name, figure) in plots::pictures().unwrap() {
+        let file = format!("{name}.svg");
+        // A checkout may have other line ends.
+        let found = std::fs::read_to_string(folder.join(&file))
+            .unwrap_or_default()
+            .replace("\r\n", "\n");
+        assert!(
+            found == figure.svg(),
+            "book/src/plots/{file} is not up to date: run `cargo run -p gonio --example plots`"
+        );
+        expected.push(file);
+    }
+    expected.sort();
+    let mut present: Vec<String> = std::fs::read_dir(&folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    present.sort();
+    assert_eq!(present, expected);
 }

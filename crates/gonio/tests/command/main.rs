@@ -10,6 +10,7 @@ mod environment;
 mod exec;
 mod interrupt;
 mod measure;
+mod plot;
 mod render;
 mod scenes;
 mod support;
