@@ -31,8 +31,8 @@ impl Figure {
         &self.svg
     }
 
-    /// The plot as a PNG file, `density` pixels for each pixel of its size along both sides. The fonts are embedded: the picture is the
-    /// same on every machine.
+    /// The plot as a PNG file, `density` pixels for each pixel of its size along both sides. The fonts are embedded: its text is
+    /// there on a machine without any.
     ///
     /// # Errors
     /// [`PlotError::Option`] if it had no or more than [`MOST_PIXELS`](crate::MOST_PIXELS) pixels; [`PlotError::Drawing`].

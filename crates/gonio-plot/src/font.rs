@@ -69,7 +69,7 @@ pub(crate) fn wrapped(text: &str, size: f64, bold: bool, most: f64, lines: usize
         .collect()
 }
 
-/// The fonts that pictures are drawn with: the embedded ones and no others, so that a picture is the same everywhere.
+/// The fonts that pictures are drawn with: the embedded ones and no others, so that a picture doesn't depend on what is installed.
 pub(crate) fn database() -> Arc<fontdb::Database> {
     static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
         let mut fonts = fontdb::Database::new();

@@ -14,7 +14,7 @@
 //! | [`difference()`] | by how much the second of two functions differs from the first |
 //! | [`pictures()`] | pictures that somebody else has rendered, side by side |
 //!
-//! The same functions and options give the same bytes on every machine.
+//! The same functions and options give the same bytes of SVG on every machine and for any number of threads.
 
 mod albedo;
 mod ball;

@@ -55,6 +55,16 @@
 //! # Ok::<(), gonio::verify::SubjectFailed>(())
 //! ```
 //!
+//! # plot
+//! A picture of anybody's function, as SVG text or PNG.
+//! ```
+//! use gonio::plot::{Function, Options, polar};
+//! let paint = Function::new("paint", |wi, wo| [if wi.z > 0.0 && wo.z > 0.0 { 0.25 } else { 0.0 }; 3]);
+//! let figure = polar(&[paint], &Options { theta_deg: vec![45.0], ..Options::default() })?;
+//! assert!(figure.svg().starts_with("<svg"));
+//! # Ok::<(), gonio::plot::PlotError>(())
+//! ```
+//!
 //! # env
 //! Light from infinitely far away.
 //! ```

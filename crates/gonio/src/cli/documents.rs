@@ -80,6 +80,15 @@ fn fault(words: &[String]) -> Option<String> {
         Ok(arguments) => arguments,
         Err(e) => return Some(e.to_string()),
     };
+    if let Command::Brdf(brdf::Command::Plot(plot)) = &arguments.command {
+        // The others are measured files.
+        let models = plot
+            .functions
+            .iter()
+            .filter(|text| !text.ends_with(".binary"));
+        let mut faults = models.filter_map(|text| ModelSpec::parse(text).err());
+        return faults.next().map(|e| e.to_string());
+    }
     let spec = match &arguments.command {
         Command::Brdf(
             brdf::Command::Show { name: spec, .. }

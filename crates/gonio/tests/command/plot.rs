@@ -36,7 +36,7 @@ fn each_kind_is_written_as_svg_and_png() {
         let arguments = small(&two, kind, &png);
         place.good(&[&arguments[..], &["--density", "1"]].concat());
         let image = place.image(&png);
-        assert_eq!((image.width(), image.height()), (400, 300), "{kind}");
+        assert_eq!((image.width, image.height), (400, 300), "{kind}");
     }
     // Nothing temporary is left.
     assert_eq!(place.files().len(), 2 * KINDS.len());
@@ -98,7 +98,7 @@ fn a_ball_under_a_panorama() {
             name,
         ];
         place.good(&arguments);
-        assert_eq!(place.image(name).width(), 300);
+        assert_eq!(place.image(name).width, 300);
     }
 }
 

@@ -6,7 +6,7 @@ mod exec;
 mod files;
 mod info;
 mod pictures;
-mod plot;
+pub(in crate::cli) mod plot;
 
 use super::failure::Failure;
 use super::parse::{self, Angles};

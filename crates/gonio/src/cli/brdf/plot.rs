@@ -27,7 +27,7 @@ const EXTENSIONS: [&str; 2] = ["svg", "png"];
 pub(in crate::cli) struct Arguments {
     /// Up to eight functions: NAME, NAME:key=value,…, or a measured file
     #[arg(required = true, value_name = "FUNCTION")]
-    functions: Vec<String>,
+    pub(in crate::cli) functions: Vec<String>,
     /// What is shown
     #[arg(long, value_enum, default_value_t = Kind::Polar)]
     kind: Kind,
