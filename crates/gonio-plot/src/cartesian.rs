@@ -6,6 +6,7 @@ use crate::curves::{Curve, Curves};
 use crate::figure::{self, Figure, MARGIN, Place};
 use crate::options::Channel;
 use crate::scale::{ScaleKind, number};
+use crate::trace::FLATNESS;
 use crate::{Function, Options, PlotError, font};
 
 /// The values of functions against the angle of reflection θr in the plane of incidence.
@@ -177,7 +178,7 @@ fn panel(
 /// The pieces of a line that are above the axis, with the points where they come from it and go back: what lies under a logarithmic axis is
 /// not drawn as if it were on it.
 fn above_the_axis(line: &[[f64; 2]], bottom: f64) -> Vec<&[[f64; 2]]> {
-    let above = |p: &[f64; 2]| p[1] < bottom - 1e-9;
+    let above = |p: &[f64; 2]| p[1] < bottom - FLATNESS;
     let mut pieces = Vec::new();
     let mut first = None;
     for k in 0..line.len() {
