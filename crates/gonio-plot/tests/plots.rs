@@ -1,5 +1,7 @@
 //! Plots hold what they show: closed forms read back from their curves, files that others can read, the same bytes each time.
 
+#![allow(clippy::unwrap_used)]
+
 use gonio_num::{Real, Vec3};
 use gonio_plot::{
     Channel, Draw, Figure, Function, Options, Picture, PlotError, ScaleKind, albedo, cartesian,
