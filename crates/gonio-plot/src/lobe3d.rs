@@ -30,7 +30,7 @@ pub fn lobe3d(functions: &[Function], options: &Options) -> Result<Figure, PlotE
     let theta = options.thetas(&[45.0])[0];
     let wi = direction(-theta, options.phi_deg);
     let value = |c: [f64; 3]| options.channel.value(c);
-    // In proportion to begin with: what is flat enough then is, or nearly, on any other scale.
+    // The scale is known when the largest value is. The cube root bends a surface more than proportion does: what is flat enough on it is so on both.
     let kind = match options.scale {
         ScaleKind::Auto => ScaleKind::CubeRoot,
         kind => kind,

@@ -4,7 +4,7 @@ use crate::cli::destination;
 use crate::cli::failure::Failure;
 use crate::cli::terminal::warn;
 use gonio_brdf::measured::format::FORMATS;
-use gonio_brdf::{Brdf, Model, ModelSpec};
+use gonio_brdf::{Brdf, BrdfError, Model, ModelSpec};
 use gonio_plot::{Draw, Function};
 use std::path::Path;
 
@@ -17,19 +17,20 @@ pub(super) struct Subject {
 }
 
 impl Subject {
-    /// The measured file `text`, if there is one of that name, or else the model that it describes.
+    /// The model that `text` describes, or else the measured file of that name.
     ///
     /// # Errors
     /// If there is neither, or the file can't be read.
     pub fn open(text: &str) -> Result<Self, Failure> {
         let path = Path::new(text);
-        let extension = destination::extension(path);
-        let measured = FORMATS.iter().any(|f| f.extension == extension);
-        let file = path.exists() || (measured && !text.contains(['(', '=']));
-        let spec = if file {
-            ModelSpec::from_pairs("table", [("file", text)])?
-        } else {
-            ModelSpec::parse(text)?
+        let (spec, file) = match ModelSpec::parse(text) {
+            // A name that no model has.
+            Err(BrdfError::UnknownModel { .. } | BrdfError::UnknownPreset { .. })
+                if path.exists() || is_measured(path) =>
+            {
+                (ModelSpec::from_pairs("table", [("file", text)])?, true)
+            }
+            described => (described?, path.exists()),
         };
         let model: Model<f64, 3> = spec.build()?;
         for line in model.warnings() {
@@ -64,4 +65,10 @@ impl Subject {
             None => function,
         }
     }
+}
+
+/// Whether the extension is that of a format of measurements.
+fn is_measured(path: &Path) -> bool {
+    let extension = destination::extension(path);
+    FORMATS.iter().any(|f| f.extension == extension)
 }
