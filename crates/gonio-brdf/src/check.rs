@@ -1,5 +1,6 @@
 //! [`check`], a model held to what it declares.
 
+use crate::model::shader::Raw;
 use crate::{Brdf, BrdfError, Model, ModelSpec, Sample};
 use gonio_num::Vec3;
 use gonio_verify::{
@@ -65,7 +66,16 @@ pub fn check_with(spec: &ModelSpec, options: &CheckOptions) -> Result<Report, Br
         relative_ior: declares.relative_ior,
     };
     let single = Single(&narrow);
-    let subject = Subject::batched(name.clone(), &double).with_single(&single);
+    // A shader is looked at as it is, without what protects a rendering from it.
+    let raw = match (&model, &narrow) {
+        (Model::Shader(double), Model::Shader(single)) => Some((Raw(double), Raw(single))),
+        _ => None,
+    };
+    let (double, single): (&dyn Reflection, &dyn Reflection) = match &raw {
+        Some((double, single)) => (double, single),
+        None => (&double, &single),
+    };
+    let subject = Subject::batched(name.clone(), double).with_single(single);
     let expectation = Expectation {
         reciprocal: declares.reciprocal,
         energy_conserving: declares.energy_conserving,

@@ -81,6 +81,9 @@ pub enum BrdfError {
     /// A check got no answer.
     #[error("no verdict: {0}")]
     NoAnswer(#[from] gonio_verify::SubjectFailed),
+    /// A shader is not what it should be.
+    #[error(transparent)]
+    Shader(#[from] gonio_shader::ShaderError),
     /// The user stopped it.
     #[error("stopped")]
     Interrupted,
@@ -123,6 +126,9 @@ impl BrdfError {
                 model, suggestion, ..
             } => Some(match suggestion {
                 Some(s) => format!("did you mean `{s}`?"),
+                None if *model == crate::model::shader::INFO.name => {
+                    "`gonio brdf show FILE` lists the parameters that a shader declares".into()
+                }
                 None => match crate::registry::find(model) {
                     Ok(info) if !info.parameters.is_empty() => {
                         let names: Vec<_> = info.parameters.iter().map(|p| p.name).collect();
@@ -147,6 +153,7 @@ impl BrdfError {
                     crate::registry::suggest(found.trim_matches('`'), options.iter().copied())?;
                 Some(format!("did you mean `{near}`?"))
             }
+            Self::Shader(error) => error.help.clone().or_else(|| error.snippet()),
             Self::Syntax { .. } => {
                 Some("write a model as name:key=value,key=value; a colour as r/g/b, #rrggbb or one number".into())
             }

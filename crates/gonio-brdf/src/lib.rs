@@ -32,6 +32,7 @@ mod check;
 mod error;
 mod number;
 mod parameter;
+mod shader_file;
 mod showcase;
 mod spec;
 

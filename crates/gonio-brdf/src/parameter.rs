@@ -3,6 +3,7 @@
 use crate::{BrdfError, ModelSpec};
 use gonio_radiometry::colour::srgb_decode;
 use std::fmt;
+use std::path::Path;
 
 /// One parameter of a model, declared once next to the formula that uses it.
 #[derive(Debug, Clone, Copy)]
@@ -47,6 +48,8 @@ pub enum Kind {
     },
     /// The path of a file, to be given.
     Path,
+    /// A name in that file; without it what the file's kind has.
+    Name,
     /// Other models, to be given.
     Models,
 }
@@ -107,7 +110,7 @@ impl ParameterInfo {
             Kind::Number { default, .. } => default.map(Value::Number),
             Kind::Colour { default, .. } => default.map(Value::Colour),
             Kind::Choice { default, .. } => default.map(|c| Value::Choice(c.into())),
-            Kind::Path | Kind::Models => None,
+            Kind::Path | Kind::Name | Kind::Models => None,
         }
     }
 
@@ -129,6 +132,7 @@ impl ParameterInfo {
             }
             Kind::Choice { options, .. } => format!("one of {}", options.join(", ")),
             Kind::Path => "a file's path".into(),
+            Kind::Name => "a name".into(),
             Kind::Models => "one or more models".into(),
         }
     }
@@ -138,15 +142,16 @@ impl ParameterInfo {
         matches!(self.kind, Kind::Number { .. } | Kind::Colour { .. })
     }
 
-    /// Reads and checks the text of a value.
-    pub(crate) fn parse(&self, model: &str, text: &str) -> Result<Value, BrdfError> {
+    /// Reads and checks the text of a value. Paths are relative to the folder.
+    pub(crate) fn parse(&self, model: &str, text: &str, folder: &Path) -> Result<Value, BrdfError> {
         let text = text.trim();
         let value = match self.kind {
             Kind::Number { .. } => text.parse().ok().map(Value::Number),
             Kind::Colour { .. } => parse_colour(text).map(Value::Colour),
             Kind::Choice { .. } => Some(Value::Choice(text.into())),
-            Kind::Path => (!text.is_empty()).then(|| Value::Path(text.into())),
-            Kind::Models => return Ok(Value::Models(ModelSpec::parse_list(text)?)),
+            Kind::Path => (!text.is_empty()).then(|| Value::Path(join(folder, text))),
+            Kind::Name => (!text.is_empty()).then(|| Value::Choice(text.into())),
+            Kind::Models => return Ok(Value::Models(ModelSpec::parse_list(text, folder)?)),
         };
         let value = value.ok_or_else(|| self.error(model, format!("`{text}`")))?;
         self.check(model, value)
@@ -174,7 +179,9 @@ impl ParameterInfo {
                 }
                 Err(self.error(model, format!("`{word}`")))
             }
-            (Kind::Path, Value::Path(_)) | (Kind::Models, Value::Models(_)) => Ok(value),
+            (Kind::Path, Value::Path(_))
+            | (Kind::Name, Value::Choice(_))
+            | (Kind::Models, Value::Models(_)) => Ok(value),
             _ => Err(self.error(model, format!("`{value}`"))),
         }
     }
@@ -221,6 +228,11 @@ impl fmt::Display for Value {
             }
         }
     }
+}
+
+/// The path of a file in a folder; as it is, if it is absolute or there is no folder.
+pub(crate) fn join(folder: &Path, file: &str) -> String {
+    folder.join(file).to_string_lossy().into_owned()
 }
 
 /// Reads `r/g/b` and one number as they are, `#rrggbb` (and `#rgb`) as sRGB-encoded, giving linear components.

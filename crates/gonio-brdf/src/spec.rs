@@ -1,9 +1,13 @@
 //! [`ModelSpec`], the description of a model in words, and how it is read and built.
 
-use crate::{BrdfError, Declares, Kind, Model, ModelInfo, Number, ParameterInfo, Value, registry};
+use crate::{
+    BrdfError, Declares, Kind, Model, ModelInfo, Number, ParameterInfo, Value, model, registry,
+    shader_file,
+};
 use gonio_num::Real;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 
 /// A model by name with the values of some of its parameters; the others have their defaults.
 ///
@@ -17,11 +21,22 @@ pub struct ModelSpec {
 }
 
 impl ModelSpec {
-    /// The model `name` (or an alias) with its defaults, or with the values of a [preset](crate::preset): `MODEL@NAME`.
+    /// The model `name` (or an alias) with its defaults, or with the values of a [preset](crate::preset): `MODEL@NAME`. The path of a
+    /// shader is the model `shader` of that file.
     ///
     /// # Errors
     /// [`BrdfError::UnknownModel`], [`BrdfError::UnknownPreset`].
     pub fn new(name: &str) -> Result<Self, BrdfError> {
+        Self::new_in(name, Path::new(""))
+    }
+
+    fn new_in(name: &str, folder: &Path) -> Result<Self, BrdfError> {
+        if let Some(file) = shader_file::path(name, folder) {
+            return Ok(Self {
+                name: model::shader::INFO.name.into(),
+                values: [("file".into(), Value::Path(file))].into(),
+            });
+        }
         if let Some((model, preset)) = name.split_once('@') {
             return crate::preset::spec(model.trim(), preset.trim());
         }
@@ -39,12 +54,20 @@ impl ModelSpec {
     /// Reads `name`, `name:key=value,key=value`, `sum(spec, spec)`, `scaled(factor, spec)`, `mix(weight, spec, spec)` or
     /// `coat(key=value, spec)`.
     ///
-    /// `name` may be followed by `@preset`. A colour is `r/g/b` (linear), `#rrggbb` (sRGB-encoded) or one number for all components. In parentheses a piece that is only
+    /// `name` may be followed by `@preset`, or be the path of a shader. A colour is `r/g/b` (linear), `#rrggbb` (sRGB-encoded) or one number for all components. In parentheses a piece that is only
     /// `key=value` belongs to the model before it, before the first model to the composite.
     ///
     /// # Errors
     /// What is wrong and where, with the nearest valid name.
     pub fn parse(text: &str) -> Result<Self, BrdfError> {
+        Self::parse_in(text, Path::new(""))
+    }
+
+    /// As [`ModelSpec::parse`], with the paths of files relative to a folder.
+    ///
+    /// # Errors
+    /// As [`ModelSpec::parse`].
+    pub fn parse_in(text: &str, folder: &Path) -> Result<Self, BrdfError> {
         let text = text.trim();
         let syntax = |column: usize, expected: &str| BrdfError::Syntax {
             text: text.into(),
@@ -56,21 +79,23 @@ impl ModelSpec {
         if name.is_empty() {
             return Err(syntax(1, "a model's name"));
         }
-        let mut whole = Self::new(name)?;
+        let mut whole = Self::new_in(name, folder)?;
         let spec = whole.named_mut(name)?;
         let rest = &text[end..];
         if let Some(inner) = rest.strip_prefix('(') {
             let Some(inner) = inner.strip_suffix(')') else {
                 return Err(syntax(text.chars().count() + 1, "`)`"));
             };
-            spec.parse_composite(inner)?;
+            spec.parse_composite(inner, folder)?;
         } else if let Some(pairs) = rest.strip_prefix(':') {
+            let mut named = Vec::new();
             for piece in split_top(pairs) {
                 match split_pair(piece) {
-                    Some((key, value)) => spec.set_text(key, value)?,
-                    None => spec.set_positional(piece, text)?,
+                    Some(pair) => named.push(pair),
+                    None => spec.set_positional(piece, text, folder)?,
                 }
             }
+            spec.set_pairs(named, folder)?;
         }
         Ok(whole)
     }
@@ -92,7 +117,10 @@ impl ModelSpec {
     /// As [`ModelSpec::part`], for what was made by [`ModelSpec::new`] with this name.
     fn named_mut(&mut self, name: &str) -> Result<&mut Self, BrdfError> {
         let model = name.split('@').next().unwrap_or(name).trim();
-        let name = registry::find(model)?.name;
+        let name = match self.name == model::shader::INFO.name {
+            true => model::shader::INFO.name,
+            false => registry::find(model)?.name,
+        };
         Ok(self
             .part_mut(name)
             .expect("invariant: what a name stands for has a part of its model"))
@@ -117,15 +145,43 @@ impl ModelSpec {
         pairs: impl IntoIterator<Item = (&'a str, &'a str)>,
     ) -> Result<Self, BrdfError> {
         let mut whole = Self::new(name)?;
-        let spec = whole.named_mut(name)?;
-        for (key, value) in pairs {
-            spec.set_text(key, value)?;
-        }
+        whole.named_mut(name)?.set_pairs(pairs, Path::new(""))?;
         Ok(whole)
     }
 
+    /// Sets parameters from text, first those that every description of the model may have: a file says which others there are.
+    fn set_pairs<'a>(
+        &mut self,
+        pairs: impl IntoIterator<Item = (&'a str, &'a str)>,
+        folder: &Path,
+    ) -> Result<(), BrdfError> {
+        let info = self.info()?;
+        let known = |key: &str| info.parameters.iter().any(|p| p.name == key);
+        let (first, rest): (Vec<_>, Vec<_>) =
+            pairs.into_iter().partition(|(key, _)| known(key.trim()));
+        for (key, value) in first.into_iter().chain(rest) {
+            self.set_text_in(key, value, folder)?;
+        }
+        Ok(())
+    }
+
+    /// The parameters that it may have: those of its model, and those that its file declares.
+    ///
+    /// # Errors
+    /// If the file can't be read, or as [`ModelSpec::info`].
+    pub fn parameters(&self) -> Result<Vec<&'static ParameterInfo>, BrdfError> {
+        let info = self.info()?;
+        let mut all: Vec<_> = info.parameters.iter().collect();
+        if info.name == model::shader::INFO.name
+            && let Some(loaded) = shader_file::load(self)?
+        {
+            all.extend(loaded.parameters);
+        }
+        Ok(all)
+    }
+
     /// Several models, separated by commas.
-    pub(crate) fn parse_list(text: &str) -> Result<Vec<Self>, BrdfError> {
+    pub(crate) fn parse_list(text: &str, folder: &Path) -> Result<Vec<Self>, BrdfError> {
         let mut groups: Vec<String> = Vec::new();
         for piece in split_top(text) {
             match groups.last_mut() {
@@ -137,7 +193,7 @@ impl ModelSpec {
                 _ => groups.push(piece.into()),
             }
         }
-        groups.iter().map(|g| Self::parse(g)).collect()
+        groups.iter().map(|g| Self::parse_in(g, folder)).collect()
     }
 
     /// Sets a parameter.
@@ -155,8 +211,16 @@ impl ModelSpec {
     /// # Errors
     /// As [`ModelSpec::set`], and if the text cannot be read.
     pub fn set_text(&mut self, key: &str, text: &str) -> Result<(), BrdfError> {
+        self.set_text_in(key, text, Path::new(""))
+    }
+
+    /// As [`ModelSpec::set_text`], with the paths of files relative to a folder.
+    ///
+    /// # Errors
+    /// As [`ModelSpec::set_text`].
+    pub fn set_text_in(&mut self, key: &str, text: &str, folder: &Path) -> Result<(), BrdfError> {
         let key = key.trim();
-        let value = self.parameter(key)?.parse(&self.name, text)?;
+        let value = self.parameter(key)?.parse(&self.name, text, folder)?;
         self.values.insert(key.into(), value);
         Ok(())
     }
@@ -195,7 +259,7 @@ impl ModelSpec {
         })
     }
 
-    fn parse_composite(&mut self, inner: &str) -> Result<(), BrdfError> {
+    fn parse_composite(&mut self, inner: &str, folder: &Path) -> Result<(), BrdfError> {
         let info = self.info()?;
         let Some(key) = info
             .parameters
@@ -216,7 +280,7 @@ impl ModelSpec {
             else {
                 break;
             };
-            self.set_text(name, value)?;
+            self.set_text_in(name, value, folder)?;
             let end = piece.as_ptr() as usize - inner.as_ptr() as usize + piece.len();
             rest = inner[end..]
                 .trim_start()
@@ -226,17 +290,17 @@ impl ModelSpec {
         let positional = info.positional.filter(|p| !self.values.contains_key(*p));
         if let Some(positional) = positional {
             let first = split_top(rest).first().copied().unwrap_or_default();
-            self.set_text(positional, first)?;
+            self.set_text_in(positional, first, folder)?;
             let end = first.as_ptr() as usize - rest.as_ptr() as usize + first.len();
             rest = rest[end..].trim_start().trim_start_matches(',');
         }
-        self.set_text(key.name, rest)
+        self.set_text_in(key.name, rest, folder)
     }
 
-    fn set_positional(&mut self, piece: &str, text: &str) -> Result<(), BrdfError> {
+    fn set_positional(&mut self, piece: &str, text: &str, folder: &Path) -> Result<(), BrdfError> {
         match self.info()?.positional {
             Some(key) if !piece.is_empty() && !self.values.contains_key(key) => {
-                self.set_text(key, piece)
+                self.set_text_in(key, piece, folder)
             }
             _ => {
                 let at = piece.as_ptr() as usize - text.as_ptr() as usize;
@@ -251,12 +315,21 @@ impl ModelSpec {
 
     fn parameter(&self, key: &str) -> Result<&'static ParameterInfo, BrdfError> {
         let info = self.info()?;
-        let found = info.parameters.iter().find(|p| p.name == key);
+        if let Some(found) = info.parameters.iter().find(|p| p.name == key) {
+            return Ok(found);
+        }
+        let all = self.parameters()?;
+        let found = all.iter().copied().find(|p| p.name == key);
         found.ok_or_else(|| BrdfError::UnknownParameter {
             model: self.name.clone(),
             name: key.into(),
-            suggestion: registry::suggest(key, info.parameters.iter().map(|p| p.name)),
+            suggestion: registry::suggest(key, all.iter().map(|p| p.name)),
         })
+    }
+
+    /// Fails if there is no parameter of this name.
+    pub(crate) fn parameter_exists(&self, key: &str) -> Result<(), BrdfError> {
+        self.parameter(key).map(|_| ())
     }
 
     /// The value of a parameter, given or default.

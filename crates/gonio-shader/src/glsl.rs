@@ -3,8 +3,8 @@
 use crate::ShaderError;
 use crate::source::{Source, erase, identifiers};
 
-/// The largest text that macros may make.
-const LARGEST_EXPANSION: u64 = 1 << 20;
+/// How many words macros may add to a text. They may be brackets, each inside the one before it.
+const LARGEST_EXPANSION: u64 = 20_000;
 
 /// A text whose uniform variables have become plain global ones.
 #[derive(Debug)]
@@ -137,7 +137,8 @@ pub(crate) fn check_macros(source: &Source, plain: &str) -> Result<(), ShaderErr
         at = start + word.len();
         let (size, repeats) = sizes.get(word).copied().unwrap_or((1, 1));
         last_repeat = repeats;
-        total = total.saturating_add(size.saturating_mul(*open.last().unwrap_or(&1)));
+        let words = size.saturating_mul(*open.last().unwrap_or(&1));
+        total = total.saturating_add(words - 1);
         if total > LARGEST_EXPANSION {
             return Err(source.error_at(start, "the macros up to here make too long a text"));
         }

@@ -43,7 +43,7 @@ pub use module::ShaderModule;
 pub use number::{Narrowed, ShaderNumber};
 pub use parameter::{Parameter, ParameterKind};
 pub use program::Program;
-pub use shader::{Drawn, Settings, Shader};
+pub use shader::{Drawn, Settings, Shader, read_text};
 pub use source::{LARGEST_SOURCE, Language};
 
 /// The README's Rust, compiled and run.

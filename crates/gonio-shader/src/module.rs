@@ -107,6 +107,12 @@ impl ShaderModule {
         all.map(|(_, f)| self.signature(f)).collect()
     }
 
+    /// The names of the functions that it defines.
+    pub fn function_names(&self) -> Vec<String> {
+        let all = self.module.functions.iter();
+        all.filter_map(|(_, f)| f.name.clone()).collect()
+    }
+
     /// Compiles a function by its name. `steps` bounds how many operations its loops may make.
     ///
     /// # Errors

@@ -2,15 +2,16 @@
 
 use gonio_num::dispatch::{Kernel, dispatch};
 use gonio_num::dual::Dual;
+use gonio_num::expr::Expr;
 use gonio_num::lanes::{LaneMask, Lanes};
-use gonio_num::{Real, Work};
+use gonio_num::{Mask, Real, Work};
 use std::fmt::Debug;
 
 /// What a shader needs of its numbers beyond [`Real`]: to know whether a mask is true anywhere, and whole numbers of 32 bits,
 /// signed or not, wrapping.
-pub trait ShaderNumber: Real<Mask: Send + 'static> + Send + 'static {
+pub trait ShaderNumber: Real<Mask: 'static> + 'static {
     /// One pattern of 32 bits a lane.
-    type Int: Copy + Debug + Send + 'static;
+    type Int: Copy + Debug + 'static;
 
     /// How many lanes the number has.
     const LANES: usize;
@@ -51,6 +52,8 @@ pub trait Narrowed<R> {
     type Output;
     /// With the numbers as they are.
     fn same(self) -> Self::Output;
+    /// Not at all: nothing can be known of such numbers.
+    fn nothing(self) -> Self::Output;
     /// With `width` numbers of type `S` for each, `split` and `join` converting them.
     fn split<S: ShaderNumber>(
         self,
@@ -242,5 +245,42 @@ impl<R: ShaderNumber, const P: usize> ShaderNumber for Dual<R, P> {
     #[inline(always)]
     fn from_int(i: R::Int, f: impl Fn(u32) -> f64) -> Self {
         Self::constant(R::from_int(i, f))
+    }
+}
+
+/// A shader can't be recorded as another: its branches depend on numbers that an expression doesn't know. What is asked of it is NaN.
+impl ShaderNumber for Expr {
+    type Int = u32;
+    const LANES: usize = 1;
+
+    fn any(_mask: Self::Mask) -> bool {
+        false
+    }
+    fn int(x: u32) -> u32 {
+        x
+    }
+    fn lane(i: u32, _lane: usize) -> u32 {
+        i
+    }
+    fn int_map(a: u32, f: impl Fn(u32) -> u32) -> u32 {
+        f(a)
+    }
+    fn int_zip(a: u32, b: u32, f: impl Fn(u32, u32) -> u32) -> u32 {
+        f(a, b)
+    }
+    fn int_test(a: u32, b: u32, f: impl Fn(u32, u32) -> bool) -> Self::Mask {
+        Self::Mask::splat(f(a, b))
+    }
+    fn int_select(_mask: Self::Mask, _a: u32, b: u32) -> u32 {
+        b
+    }
+    fn to_int(self, _f: impl Fn(f64) -> u32) -> u32 {
+        0
+    }
+    fn from_int(i: u32, f: impl Fn(u32) -> f64) -> Self {
+        Self::lit(f(i))
+    }
+    fn narrow<V: Narrowed<Self>>(visitor: V) -> V::Output {
+        visitor.nothing()
     }
 }

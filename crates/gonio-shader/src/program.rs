@@ -6,13 +6,24 @@ use crate::number::{Narrowed, ShaderNumber};
 use crate::source::Source;
 use crate::tape::Tape;
 use std::any::Any;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::cell::RefCell;
+use std::sync::{Arc, Weak};
 
 /// Directions that [`Program::run_many`] takes at a time.
 const WIDTH: usize = 32;
 
-/// Machines that are kept for the next call: one a thread is enough.
-const KEPT: usize = 64;
+/// Machines that a thread keeps for its next calls.
+const KEPT: usize = 16;
+
+/// A machine of a program, over whatever number it was made for, with its constants in place.
+struct Idle {
+    program: Weak<()>,
+    machine: Box<dyn Any>,
+}
+
+thread_local! {
+    static IDLE: RefCell<Vec<Idle>> = const { RefCell::new(Vec::new()) };
+}
 
 /// One function of a shader, ready to run with any [`ShaderNumber`] on any thread.
 ///
@@ -24,8 +35,8 @@ pub struct Program {
     source: Arc<Source>,
     tape: Tape,
     steps: u64,
-    // Registers with their constants in place, of whatever number they were made for.
-    idle: Mutex<Vec<Box<dyn Any + Send>>>,
+    /// What tells its machines from those of other programs.
+    identity: Arc<()>,
 }
 
 impl Program {
@@ -35,7 +46,7 @@ impl Program {
             source,
             tape,
             steps,
-            idle: Mutex::new(Vec::new()),
+            identity: Arc::new(()),
         }
     }
 
@@ -151,25 +162,33 @@ impl Program {
         error
     }
 
-    /// A machine that is idle, or a new one.
+    /// A machine that is idle on this thread, or a new one.
     fn take<R: ShaderNumber>(&self, width: usize) -> Box<Machine<R>> {
-        let fits = |m: &Box<dyn Any + Send>| {
-            m.downcast_ref::<Machine<R>>()
-                .is_some_and(|m| m.width == width)
+        let fits = |idle: &Idle| {
+            let machine = idle.machine.downcast_ref::<Machine<R>>();
+            std::ptr::eq(idle.program.as_ptr(), Arc::as_ptr(&self.identity))
+                && machine.is_some_and(|m| m.width == width)
         };
-        let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
-        let found = idle.iter().position(fits).map(|k| idle.swap_remove(k));
-        drop(idle);
+        let found = IDLE.with_borrow_mut(|all| {
+            let at = all.iter().position(fits)?;
+            Some(all.swap_remove(at).machine)
+        });
         found
             .and_then(|machine| machine.downcast().ok())
             .unwrap_or_else(|| Box::new(Machine::new(&self.tape, width)))
     }
 
     fn give_back<R: ShaderNumber>(&self, machine: Box<Machine<R>>) {
-        let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
-        if idle.len() < KEPT {
-            idle.push(machine);
-        }
+        IDLE.with_borrow_mut(|all| {
+            if all.len() >= KEPT {
+                all.retain(|idle| idle.program.strong_count() > 0);
+                all.truncate(KEPT - 1);
+            }
+            all.push(Idle {
+                program: Arc::downgrade(&self.identity),
+                machine,
+            });
+        });
     }
 }
 
@@ -186,6 +205,11 @@ impl<R: ShaderNumber> Narrowed<R> for Job<'_, R> {
 
     fn same(self) -> Self::Output {
         self.split::<R>(1, |x, _| *x, |x, _, y| *x = y)
+    }
+
+    fn nothing(self) -> Self::Output {
+        self.outputs.fill(R::lit(f64::NAN));
+        Ok(())
     }
 
     fn split<S: ShaderNumber>(

@@ -5,13 +5,16 @@ use crate::error::SourcePlace;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The largest text that is read: some hundred times what a reflection function needs.
-pub const LARGEST_SOURCE: usize = 1 << 20;
+/// The largest text that is read, in bytes: some hundred times what a reflection function needs, several times one with its tables.
+pub const LARGEST_SOURCE: usize = 4 << 20;
 
-/// Brackets in brackets, and branches in branches, that a text may have.
+/// Brackets in brackets that a text may have.
 const DEEPEST: usize = 128;
 
-/// Words and signs between two semicolons or braces.
+/// Branches of one `if … else if …`, each of which is inside the one before it.
+const MOST_BRANCHES: usize = 1000;
+
+/// Words and signs between two semicolons, braces or commas, those around the brackets included.
 const LONGEST_STATEMENT: usize = 20_000;
 
 /// The language that a shader is written in.
@@ -91,39 +94,51 @@ impl Source {
 
     /// Refuses texts on which a recursive parser would run out of stack.
     pub fn check_nesting(&self, code: &str) -> Result<(), ShaderError> {
-        let mut depth = 0usize;
+        /// What has been seen between two brackets.
+        #[derive(Default)]
+        struct Level {
+            words: usize,
+            branches: usize,
+        }
+        // The sum over all levels: an expression is no deeper than that.
         let mut words = 0usize;
-        let mut branches = 0usize;
+        let mut levels = vec![Level::default()];
         let mut in_word = false;
         for (at, c) in code.char_indices() {
             let is_word = c.is_alphanumeric() || c == '_' || c == '.';
-            if !c.is_whitespace() && (!is_word || !in_word) {
-                words += 1;
-            }
+            let begins = is_word && !in_word;
+            let counts = begins || !(is_word || c.is_whitespace());
             in_word = is_word;
-            match c {
-                '(' | '[' | '{' => depth += 1,
-                ')' | ']' | '}' => depth = depth.saturating_sub(1),
-                _ => {}
+            if matches!(c, ')' | ']' | '}') && levels.len() > 1 {
+                words -= levels.pop().unwrap_or_default().words;
             }
-            if c == '<' || (c == 'e' && code[at..].starts_with("else")) {
-                branches += 1;
+            if let Some(here) = levels.last_mut() {
+                here.words += usize::from(counts);
+                words += usize::from(counts);
+                here.branches += usize::from(begins && code[at..].starts_with("else"));
+                if matches!(c, ';' | ',' | '{' | '}') {
+                    words -= std::mem::take(&mut here.words);
+                }
+                if c == ';' {
+                    here.branches = 0;
+                }
+                if here.branches > MOST_BRANCHES {
+                    return Err(
+                        self.error_at(at, format!("more than {MOST_BRANCHES} branches in a row"))
+                    );
+                }
             }
-            match c {
-                // A comma ends nothing: a list is no deeper than its longest member, but naga keeps it as one statement.
-                ';' => (words, branches) = (0, 0),
-                '{' => words = 0,
-                '}' => words = 0,
-                _ => {}
+            if matches!(c, '(' | '[' | '{') {
+                levels.push(Level::default());
             }
-            if depth > DEEPEST || branches > 4 * DEEPEST {
+            if levels.len() > DEEPEST + 1 {
                 return Err(self.error_at(at, format!("nested more than {DEEPEST} deep")));
             }
             if words > LONGEST_STATEMENT {
                 return Err(self.error_at(
                     at,
                     format!(
-                        "more than {LONGEST_STATEMENT} words and signs without a semicolon or brace"
+                        "more than {LONGEST_STATEMENT} words and signs without a semicolon, brace or comma"
                     ),
                 ));
             }

@@ -44,7 +44,7 @@ pub fn pages() -> Result<Vec<(String, String)>, String> {
     Ok(pages)
 }
 
-/// The page of a model and its picture. A table has no example, so no picture: it comes from a file.
+/// The page of a model and its picture. A table and a shader have no example, so no picture: they come from files.
 fn files(info: &ModelInfo, example: Option<&ModelSpec>) -> Result<Vec<(String, String)>, String> {
     let picture = example
         .map(picture::draw)

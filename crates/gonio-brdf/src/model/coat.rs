@@ -206,9 +206,9 @@ impl<R: Number, const N: usize> Coat<R, N> {
 }
 
 impl<R: Real, const N: usize> Composite<R, N> for Coat<R, N> {
-    type With<S: Real, P: Brdf<S, N>> = Coat<S, N, P>;
+    type With<S: Number, P: Brdf<S, N>> = Coat<S, N, P>;
 
-    fn with<'a, S: Real, P: Brdf<S, N>>(
+    fn with<'a, S: Number, P: Brdf<S, N>>(
         &'a self,
         number: &impl Fn(R) -> S,
         part: &impl Fn(&'a Model<R, N>) -> P,

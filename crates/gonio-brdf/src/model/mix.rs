@@ -88,9 +88,9 @@ impl<R: Number, const N: usize> Mix<R, N> {
 }
 
 impl<R: Real, const N: usize> Composite<R, N> for Mix<R, N> {
-    type With<S: Real, P: Brdf<S, N>> = Mix<S, N, P>;
+    type With<S: Number, P: Brdf<S, N>> = Mix<S, N, P>;
 
-    fn with<'a, S: Real, P: Brdf<S, N>>(
+    fn with<'a, S: Number, P: Brdf<S, N>>(
         &'a self,
         number: &impl Fn(R) -> S,
         part: &impl Fn(&'a Model<R, N>) -> P,

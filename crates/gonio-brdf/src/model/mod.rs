@@ -25,6 +25,7 @@ pub mod phong;
 pub mod retro_reflective;
 pub mod rough_dielectric;
 pub mod scaled;
+pub mod shader;
 pub mod sheen_charlie;
 pub mod sheen_ltc;
 pub mod smooth_dielectric;
@@ -36,7 +37,7 @@ pub mod torrance_sparrow;
 pub mod ward;
 pub mod ward_duer;
 
-use crate::{Brdf, BrdfError, ModelInfo, ModelSpec, Number, Sample, registry};
+use crate::{Brdf, BrdfError, ModelInfo, ModelSpec, Number, ParameterInfo, Sample, registry};
 use gonio_num::{Real, Vec3, Work};
 
 /// A model whose numbers can be of any type: what a batch needs to go from `f32` to lanes.
@@ -50,9 +51,9 @@ pub(crate) trait Castable<R: Real, const N: usize> {
 /// A model made of others. Its parts can be of any type that reflects: a batch evaluates each of them as a batch of its own.
 pub(crate) trait Composite<R: Real, const N: usize> {
     /// The model over another number type, with other parts.
-    type With<S: Real, P: Brdf<S, N>>: Brdf<S, N>;
+    type With<S: Number, P: Brdf<S, N>>: Brdf<S, N>;
     /// Each number converted by `number`, each part by `part`.
-    fn with<'a, S: Real, P: Brdf<S, N>>(
+    fn with<'a, S: Number, P: Brdf<S, N>>(
         &'a self,
         number: &impl Fn(R) -> S,
         part: &impl Fn(&'a Model<R, N>) -> P,
@@ -170,8 +171,8 @@ macro_rules! models {
                 match self { $(Self::$variant(_) => &const { $module::INFO },)* $(Self::$composite(_) => &const { $cmodule::INFO },)* }
             }
 
-            fn set(&mut self, index: usize, value: [R; 3]) {
-                match self { $(Self::$variant(m) => m.set($module::INFO.parameters[index].name, value),)* $(Self::$composite(m) => m.set($cmodule::INFO.parameters[index].name, value),)* }
+            fn set(&mut self, parameter: &str, value: [R; 3]) {
+                match self { $(Self::$variant(m) => m.set(parameter, value),)* $(Self::$composite(m) => m.set(parameter, value),)* }
             }
         }
     };
@@ -245,6 +246,8 @@ models! {
     Coat: coat,
     /// OpenPBR Surface 1.1.
     OpenPbr: openpbr,
+    /// A reflection function written as a shader. It is made of no others, but batches treat it so: one evaluator for all.
+    Shader: shader,
 }
 
 impl<R: Number, const N: usize> Model<R, N> {
@@ -267,11 +270,24 @@ impl<R: Number, const N: usize> Model<R, N> {
             Self::Scaled(scaled) => scaled.of.warnings(),
             Self::Coat(coat) => coat.base().warnings(),
             Self::Table(table) => table.warnings(),
+            Self::Shader(shader) => shader.warnings(),
             _ => Vec::new(),
         }
     }
 
-    /// Whether its formula can be printed as shader code: not a table, nor anything that contains one.
+    /// The first evaluation of a shader in it that didn't end within its steps: since then the model is NaN.
+    pub fn failure(&self) -> Option<BrdfError> {
+        match self {
+            Self::Sum(sum) => sum.parts.iter().find_map(Model::failure),
+            Self::Mix(mix) => mix.parts.iter().find_map(Model::failure),
+            Self::Scaled(scaled) => scaled.of.failure(),
+            Self::Coat(coat) => coat.base().failure(),
+            Self::Shader(shader) => shader.failure().cloned().map(BrdfError::Shader),
+            _ => None,
+        }
+    }
+
+    /// Whether its formula can be printed as shader code: not a table or a shader, nor anything that contains one.
     pub fn is_recordable(&self) -> bool {
         match self {
             Self::Sum(sum) => sum.parts.iter().all(Model::is_recordable),
@@ -286,11 +302,19 @@ impl<R: Number, const N: usize> Model<R, N> {
 }
 
 /// A parameter that a texture drives, found once by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub struct ParameterSlot {
     model: &'static str,
-    index: usize,
+    parameter: &'static ParameterInfo,
 }
+
+impl PartialEq for ParameterSlot {
+    fn eq(&self, other: &Self) -> bool {
+        (self.model, self.parameter.name) == (other.model, other.parameter.name)
+    }
+}
+
+impl Eq for ParameterSlot {}
 
 impl ParameterSlot {
     /// The parameter `parameter` of the model `model`.
@@ -299,24 +323,45 @@ impl ParameterSlot {
     /// If there is no such model or parameter, or the parameter is a word or a file.
     pub fn find(model: &str, parameter: &str) -> Result<Self, BrdfError> {
         let info = registry::find(model)?;
-        let index = info.parameters.iter().position(|p| p.name == parameter);
-        let Some(index) = index else {
+        Self::among(info, info.parameters.iter(), parameter)
+    }
+
+    /// The parameter `parameter` of what `spec` describes: also one that its file declares.
+    ///
+    /// # Errors
+    /// As [`ParameterSlot::find`].
+    pub fn of(spec: &ModelSpec, parameter: &str) -> Result<Self, BrdfError> {
+        Self::among(spec.info()?, spec.parameters()?.into_iter(), parameter)
+    }
+
+    /// The parameter as it is declared.
+    pub fn parameter(self) -> &'static ParameterInfo {
+        self.parameter
+    }
+
+    fn among(
+        info: &'static ModelInfo,
+        mut all: impl Iterator<Item = &'static ParameterInfo> + Clone,
+        parameter: &str,
+    ) -> Result<Self, BrdfError> {
+        let Some(found) = all.clone().find(|p| p.name == parameter) else {
             return Err(BrdfError::UnknownParameter {
-                model: model.into(),
+                model: info.name.into(),
                 name: parameter.into(),
-                suggestion: registry::suggest(parameter, info.parameters.iter().map(|p| p.name)),
+                suggestion: registry::suggest(parameter, (&mut all).map(|p| p.name)),
             });
         };
-        if !info.parameters[index].is_continuous() {
+        if !found.is_continuous() {
             return Err(BrdfError::Unsupported {
                 what: format!(
-                    "parameter `{parameter}` of `{model}` is not a number or colour: no texture can drive it"
+                    "parameter `{parameter}` of `{}` is not a number or colour: no texture can drive it",
+                    info.name
                 ),
             });
         }
         Ok(Self {
             model: info.name,
-            index,
+            parameter: found,
         })
     }
 }
@@ -344,7 +389,7 @@ impl<const N: usize> Model<f32, N> {
                 coat.update();
             }
             _ if self.info().name == slot.model => {
-                let (low, high) = match self.info().parameters[slot.index].kind {
+                let (low, high) = match slot.parameter.kind {
                     crate::Kind::Number { low, high, .. }
                     | crate::Kind::Colour { low, high, .. } => (low as f32, high as f32),
                     _ => return,
@@ -353,7 +398,7 @@ impl<const N: usize> Model<f32, N> {
                 for x in &mut limited {
                     *x = Real::clamp(*x, low, high);
                 }
-                self.set(slot.index, limited);
+                self.set(slot.parameter.name, limited);
             }
             _ => {}
         }

@@ -63,9 +63,9 @@ impl<R: Number, const N: usize> RetroReflective<R, N> {
 }
 
 impl<R: Real, const N: usize> Composite<R, N> for RetroReflective<R, N> {
-    type With<S: Real, P: Brdf<S, N>> = RetroReflective<S, N, P>;
+    type With<S: Number, P: Brdf<S, N>> = RetroReflective<S, N, P>;
 
-    fn with<'a, S: Real, P: Brdf<S, N>>(
+    fn with<'a, S: Number, P: Brdf<S, N>>(
         &'a self,
         _number: &impl Fn(R) -> S,
         part: &impl Fn(&'a Model<R, N>) -> P,

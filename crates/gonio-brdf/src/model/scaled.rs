@@ -74,9 +74,9 @@ impl<R: Number, const N: usize> Scaled<R, N> {
 }
 
 impl<R: Real, const N: usize> Composite<R, N> for Scaled<R, N> {
-    type With<S: Real, P: Brdf<S, N>> = Scaled<S, N, P>;
+    type With<S: Number, P: Brdf<S, N>> = Scaled<S, N, P>;
 
-    fn with<'a, S: Real, P: Brdf<S, N>>(
+    fn with<'a, S: Number, P: Brdf<S, N>>(
         &'a self,
         number: &impl Fn(R) -> S,
         part: &impl Fn(&'a Model<R, N>) -> P,

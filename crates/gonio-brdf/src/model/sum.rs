@@ -91,9 +91,9 @@ impl<R: Number, const N: usize> Sum<R, N> {
 }
 
 impl<R: Real, const N: usize> Composite<R, N> for Sum<R, N> {
-    type With<S: Real, P: Brdf<S, N>> = Sum<S, N, P>;
+    type With<S: Number, P: Brdf<S, N>> = Sum<S, N, P>;
 
-    fn with<'a, S: Real, P: Brdf<S, N>>(
+    fn with<'a, S: Number, P: Brdf<S, N>>(
         &'a self,
         _number: &impl Fn(R) -> S,
         part: &impl Fn(&'a Model<R, N>) -> P,

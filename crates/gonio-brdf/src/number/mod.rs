@@ -8,6 +8,7 @@ use gonio_num::Real;
 use gonio_num::dual::Dual;
 use gonio_num::expr::Expr;
 use gonio_num::lanes::{LaneMask, Lanes};
+use gonio_shader::ShaderNumber;
 use std::fmt::Debug;
 
 /// Runs the body for `$i` = 0, 1, … `$n` − 1, at most 7, written out.
@@ -61,11 +62,11 @@ impl<const K: usize, const M: usize> Function<K, M> for Through<'_, K, M> {
     }
 }
 
-/// A [`Real`] with which models, tables included, can be evaluated.
+/// A [`Real`] with which models, tables and shaders included, can be evaluated.
 ///
 /// A table in memory is read in three steps, each of them over lanes: [`Number::cell`] finds where a coordinate lies,
 /// [`Index`] makes an address of it, [`Number::gather`] fetches the numbers that stand there.
-pub trait Number: Real {
+pub trait Number: ShaderNumber {
     /// Calls `f` in each lane: for code too large to be compiled once more for every number of lanes. Derivatives through it are
     /// central differences with step 1e-5.
     fn call<const K: usize, const M: usize>(f: &dyn Function<K, M>, x: [Self; K]) -> [Self; M];

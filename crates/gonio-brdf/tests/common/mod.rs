@@ -14,6 +14,11 @@ pub fn base(info: &ModelInfo) -> Option<ModelSpec> {
             "coat(roughness=0.4, ior=1.6, color=0.9/0.6/0.3, lambertian:0.3/0.6/0.8)".to_owned()
         }
         "scaled" => "scaled(0.2/0.5/0.8, phong:exponent=12)".to_owned(),
+        "shader" => concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../examples/shaders/ggx.wgsl"
+        )
+        .to_owned(),
         // A table comes from a file: it has tests of its own.
         "table" => return None,
         name => name.to_owned(),
@@ -49,7 +54,7 @@ fn values(kind: &Kind) -> Vec<Value> {
         Kind::Choice { options, .. } => {
             options.iter().map(|o| Value::Choice((*o).into())).collect()
         }
-        Kind::Path | Kind::Models => Vec::new(),
+        Kind::Path | Kind::Name | Kind::Models => Vec::new(),
     }
 }
 

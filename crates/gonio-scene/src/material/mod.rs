@@ -188,7 +188,7 @@ impl Material {
         parameter: &str,
         map: Option<NormalMap>,
     ) -> Result<(), SceneError> {
-        let slot = ParameterSlot::find(self.spec.info()?.name, parameter)?;
+        let slot = ParameterSlot::of(&self.spec, parameter)?;
         self.second_normal = Some(SecondNormal { slot, map });
         Ok(())
     }
@@ -245,10 +245,8 @@ impl Material {
         if let Some(at) = self.bindings.iter().position(|b| b.parameter == parameter) {
             return Ok(&mut self.bindings[at]);
         }
-        let info = self.spec.info()?;
-        let slot = ParameterSlot::find(info.name, parameter)?;
-        let declared = info.parameters.iter().find(|p| p.name == parameter);
-        let declared = declared.expect("invariant: a slot is found for declared parameters only");
+        let slot = ParameterSlot::of(&self.spec, parameter)?;
+        let declared = slot.parameter();
         let base = match self.spec.values.get(parameter) {
             Some(Value::Number(x)) => [*x as f32; 3],
             Some(Value::Colour(c)) => c.map(|x| x as f32),

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 /// Operations, registers and constants of one tape: a bound on memory. A reflection function needs some hundreds.
-pub(super) const LARGEST: usize = 1 << 17;
+pub(super) const LARGEST: usize = 1 << 18;
 
 /// What a scalar is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -420,7 +420,12 @@ impl Compiler<'_> {
             M::Pow => {
                 let ln = self.e.unary(Unary::Ln, a);
                 let exponent = self.e.mul(x[1], ln);
-                self.e.unary(Unary::Exp, exponent)
+                let power = self.e.unary(Unary::Exp, exponent);
+                // The same value, of which a derivative would be 0·∞.
+                let nothing = self.e.compare(Compare::Equal, a, zero);
+                let positive = self.e.compare(Compare::Less, zero, x[1]);
+                let both = self.e.logic(Logic::And, nothing, positive);
+                self.e.select_real(both, zero, power)
             }
             M::Sign => {
                 let minus = self.e.lit(-1.0);

@@ -26,7 +26,7 @@ fn each_mistake_has_its_place() {
         ("var<workgroup> x: atomic<u32>;\nfn eval(wi: vec3f, wo: vec3f) -> vec3f { return wi * f32(atomicAdd(&x, 1u)); }".into(), "a.wgsl:2:58: atomic operations are not supported"),
         ("@group(0) @binding(0) var t: texture_2d<f32>;\n@group(0) @binding(1) var s: sampler;\nfn eval(wi: vec3f, wo: vec3f) -> vec3f { return textureSampleLevel(t, s, wi.xy, 0.0).xyz; }".into(), "a.wgsl:3:49: textures are not supported"),
         (format!("{eval} {{\n  return dpdx(wi);\n}}"), "a.wgsl:2:10: derivatives (dpdx, dFdx, fwidth, …) need neighbouring pixels: they are not supported"),
-        (format!("{eval} {{\n  var a: array<f32, 1000000>;\n  a[1] = 1.0;\n  return wi * a[2];\n}}"), "a.wgsl:2:3: an array of 1000000 elements is too large: a shader may have at most 131072 numbers"),
+        (format!("{eval} {{\n  var a: array<f32, 1000000>;\n  a[1] = 1.0;\n  return wi * a[2];\n}}"), "a.wgsl:2:3: an array of 1000000 elements is too large: a shader may have at most 262144 numbers"),
         (format!("override r: f32 = 2.0; // 0..1 rough\n{eval} {{ return wi * r; }}"), "a.wgsl:1:1: parameter `r` is 2 when not given, outside its range 0..1"),
         (format!("override r: f32 = 2.0; // 3..1 rough\n{eval} {{ return wi * r; }}"), "a.wgsl:1:1: parameter `r`: found the range `3..1`, expected the smaller end first"),
     ] {
@@ -94,6 +94,11 @@ fn what_is_too_deep_or_too_long_is_refused() {
     assert!(error("a.wgsl", &text).contains("words and signs without a semicolon"));
     let text = body("wi.x + ".repeat(50_000) + "1.0");
     assert!(error("a.wgsl", &text).contains("words and signs without a semicolon"));
+    let text = format!(
+        "fn eval(wi: vec3f, wo: vec3f) -> vec3f {{ var s = 0.0; if wi.x < 0.0 {{ s = 1.0; }} {} return wi * s; }}",
+        "else if wi.x < 1.0 { s = 2.0; } ".repeat(5000)
+    );
+    assert!(error("a.wgsl", &text).contains("more than 1000 branches in a row"));
     let text = "x".repeat(LARGEST_SOURCE + 1);
     assert!(error("a.wgsl", &text).contains("expected a shader of at most"));
     // Calls that double: 2³⁰ operations once written out.
@@ -124,6 +129,11 @@ fn what_is_just_let_through_is_read() {
     load("a.wgsl", &deep).unwrap();
     let long = body("wi.x + ".repeat(4000) + "1.0");
     load("a.wgsl", &long).unwrap();
+    let chain = format!(
+        "fn eval(wi: vec3f, wo: vec3f) -> vec3f {{ var s = 0.0; if wi.x < 0.0 {{ s = 1.0; }} {} return wi * s; }}",
+        "else if wi.x < 1.0 { s = 2.0; } ".repeat(900)
+    );
+    load("a.wgsl", &chain).unwrap();
     let minus = body("-".repeat(9000) + "wi.x");
     // Whatever comes of it, it comes.
     let _ = load("a.wgsl", &minus);

@@ -140,3 +140,23 @@ fn wrong_headers_are_named_with_their_line() {
         );
     }
 }
+
+/// What people write in these files: chains of conditions, a function of their own that has a built-in one's name, variables that hide functions and
+/// parameters, whole numbers where others are meant.
+#[test]
+fn the_style_of_the_explorer() {
+    let text = "analytic\n::begin parameters\nbool a 0\nbool b 1\nfloat f0 0 1 .25\n::end parameters\n::begin shader\n\
+        vec3 reflect(vec3 I, vec3 N) { return 2*dot(I,N)*N - I; }\n\
+        float phi(float f0) { float phi = f0 * 2; return phi < 0 ? 1-phi : phi; }\n\
+        vec3 BRDF( vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y )\n\
+        { vec3 v = a ? X : b ? reflect(L, N) : vec3(0); return (a ? vec3(v[0]) : v) + phi(f0) / 2 + .5 * f0; }\n\
+        ::end shader";
+    let shader = load("a.brdf", text).unwrap();
+    let (wi, wo) = (Vec3::new(0.48, 0.6, 0.64), Vec3::new(0.0, 0.0, 1.0));
+    let f = shader.eval(&shader.defaults(), wi, wo);
+    // The mirror image about N, and 0.25 + 0.125.
+    let expected = [-0.48 + 0.375, -0.6 + 0.375, 0.64 + 0.375];
+    for k in 0..3 {
+        assert!(super::near(f[k], expected[k], 1e-12), "{f:?} {expected:?}");
+    }
+}

@@ -99,7 +99,10 @@ fn fault(words: &[String]) -> Option<String> {
         ) if spec != "all" => spec,
         _ => return None,
     };
-    ModelSpec::parse(spec).err().map(|e| e.to_string())
+    // Files in examples are named from the root.
+    ModelSpec::parse_in(spec, &root())
+        .err()
+        .map(|e| e.to_string())
 }
 
 #[test]

@@ -152,6 +152,15 @@ impl From<BrdfError> for Failure {
                 Self::input(message).with_help("name one of the files in the folder")
             }
             BrdfError::Format { .. } => Self::input(message).with_help(DAMAGED),
+            BrdfError::Shader(error) => {
+                let failure = Self::input(message);
+                match help.or(error.help) {
+                    Some(help) => failure.with_help(help),
+                    None => {
+                        failure.with_help("the book's page on shaders says what a shader defines")
+                    }
+                }
+            }
             BrdfError::Interrupted => {
                 Self::interrupted(message).with_help("nothing was written: run it again")
             }

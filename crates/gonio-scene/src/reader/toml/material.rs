@@ -9,7 +9,7 @@ use crate::{Material, SceneError};
 use gonio_brdf::{BrdfError, Kind, ModelSpec};
 use gonio_image::{Limits, RawImage};
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeValue;
 
@@ -163,10 +163,20 @@ pub(super) fn read(section: &Section, textures: &mut Textures) -> Result<Materia
     let name = section.text("name")?.unwrap_or_default();
     let source = section.source;
     let model_text = section.text("model")?.unwrap_or("lambertian");
-    let mut spec = ModelSpec::parse(model_text).map_err(|e| brdf_error(section, "model", &e))?;
+    let folder = source.relative("");
+    let mut spec =
+        ModelSpec::parse_in(model_text, &folder).map_err(|e| brdf_error(section, "model", &e))?;
     if let Some(params) = section.get("params") {
-        for (key, span, value) in Section::open(source, "params", params)?.entries() {
-            set(&mut spec, key, value).map_err(|e| match e {
+        let params = Section::open(source, "params", params)?;
+        // A file comes first: it says which other parameters there are.
+        let known = spec.info().map_or(&[][..], |info| info.parameters);
+        let is_known = |key: &str| known.iter().any(|p| p.name == key);
+        let (first, rest): (Vec<_>, Vec<_>) = params
+            .entries()
+            .into_iter()
+            .partition(|(key, ..)| is_known(key));
+        for (key, span, value) in first.into_iter().chain(rest) {
+            set(&mut spec, key, value, &folder).map_err(|e| match e {
                 // The key is wrong, or else its value.
                 BrdfError::UnknownParameter { .. } => {
                     source.error(span.clone(), e.to_string(), parameter_help(&spec, key))
@@ -178,9 +188,11 @@ pub(super) fn read(section: &Section, textures: &mut Textures) -> Result<Materia
     let mut material =
         Material::new(name, &spec).map_err(|e| section.error(e.to_string(), e.help()))?;
     if let Some(table) = section.get("textures") {
-        let info = spec.info().map_err(|e| brdf_error(section, "model", &e))?;
+        let parameters = spec
+            .parameters()
+            .map_err(|e| brdf_error(section, "model", &e))?;
         for (key, span, value) in Section::open(source, "textures", table)?.entries() {
-            let declared = info.parameters.iter().find(|p| p.name == key);
+            let declared = parameters.iter().find(|p| p.name == key);
             let is_colour = declared.is_some_and(|p| matches!(p.kind, Kind::Colour { .. }));
             let transfer = if is_colour {
                 Transfer::Srgb
@@ -303,10 +315,10 @@ fn opacity(
 }
 
 /// Sets a parameter of a model from a TOML value.
-fn set(spec: &mut ModelSpec, key: &str, value: &Value) -> Result<(), BrdfError> {
+fn set(spec: &mut ModelSpec, key: &str, value: &Value, folder: &Path) -> Result<(), BrdfError> {
     use gonio_brdf::Value as Parameter;
     match value.get_ref() {
-        DeValue::String(text) => spec.set_text(key, text),
+        DeValue::String(text) => spec.set_text_in(key, text, folder),
         DeValue::Boolean(b) => spec.set_text(key, if *b { "on" } else { "off" }),
         DeValue::Array(items) if items.len() == 3 => {
             // What is no number becomes NaN, which no parameter takes.
@@ -321,13 +333,7 @@ fn set(spec: &mut ModelSpec, key: &str, value: &Value) -> Result<(), BrdfError> 
 }
 
 fn parameter_help(spec: &ModelSpec, key: &str) -> Option<String> {
-    let names: Vec<&str> = spec
-        .info()
-        .ok()?
-        .parameters
-        .iter()
-        .map(|p| p.name)
-        .collect();
+    let names: Vec<&str> = spec.parameters().ok()?.iter().map(|p| p.name).collect();
     did_you_mean(key, &names)
 }
 

@@ -340,3 +340,35 @@ fn a_gltf_object_is_included() {
     assert_eq!(copies[0].to_world.x, Vec3::new(2.0, 0.0, 0.0));
     assert_eq!(copies[1].to_world.origin, Vec3::new(5.0, 0.0, 0.0));
 }
+
+/// A shader is found beside the scene; its own parameters may stand before its file, and textures drive them.
+#[test]
+fn shaders_are_materials() {
+    let folder = tempfile::tempdir().unwrap();
+    Image::filled(4, 2, [1.0, 0.0, 0.0])
+        .write(&folder.path().join("red.png"))
+        .unwrap();
+    let shader = "override amount: f32 = 0.5; // 0..1 albedo
+        fn eval(wi: vec3f, wo: vec3f) -> vec3f { return vec3f(amount / 3.14159265); }";
+    std::fs::write(folder.path().join("matt.wgsl"), shader).unwrap();
+    let path = folder.path().join("scene.toml");
+    let material = |text: &str| {
+        let shape = "[[shape]]\ntype = \"sphere\"\nmaterial = \"m\"\n";
+        std::fs::write(
+            &path,
+            format!("[[material]]\nname = \"m\"\n{text}\n{shape}"),
+        )
+        .unwrap();
+        Scene::load(&path, &LoadOptions::default())
+    };
+    material("model = \"matt.wgsl:amount=0.25\"").unwrap();
+    material("model = \"shader\"\nparams = { amount = 0.25, file = \"matt.wgsl\" }").unwrap();
+    material("model = \"matt.wgsl\"\ntextures = { amount = \"red.png\" }").unwrap();
+    let error = material("model = \"matt.wgsl\"\nparams = { amonut = 0.25 }").unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("`shader` has no parameter `amonut`"),
+        "{error}"
+    );
+}

@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::parse::{self, Angles};
 use super::presets;
 use super::terminal::{print, print_json, significant, warn};
-use gonio_brdf::{Brdf, Model, ModelInfo, ModelSpec, registry};
+use gonio_brdf::{Brdf, Model, ModelInfo, ModelSpec, ParameterInfo, registry};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -132,8 +132,11 @@ fn show(name: &str, json: bool) -> Result<(), Failure> {
     let named = name.split(['@', ':', '(']).next().unwrap_or(name);
     let spec = whole.part(named.trim()).unwrap_or(&whole);
     let model = spec.info()?;
+    let parameters = spec.parameters()?;
     if json {
-        return print_json(&in_json(model));
+        let mut model = in_json(model);
+        model["parameters"] = parameters_in_json(parameters.into_iter());
+        return print_json(&model);
     }
     let declared = whole.declares()?;
     let mut text = format!(
@@ -141,16 +144,11 @@ fn show(name: &str, json: bool) -> Result<(), Failure> {
         wrapped(&format!("{}: {}", model.name, model.summary), 2),
         wrapped(&format!("Source: {}", model.paper), 2)
     );
-    if !model.parameters.is_empty() {
+    if !parameters.is_empty() {
         text += "\nParameters\n";
     }
-    let width = model
-        .parameters
-        .iter()
-        .map(|p| p.name.len())
-        .max()
-        .unwrap_or(0);
-    for parameter in model.parameters {
+    let width = parameters.iter().map(|p| p.name.len()).max().unwrap_or(0);
+    for parameter in parameters {
         let given = spec.values.contains_key(parameter.name);
         let value = match spec.value(parameter.name) {
             Some(value) if given => format!("here {value}"),
@@ -213,7 +211,21 @@ pub(super) fn wrapped(text: &str, indent: usize) -> String {
     lines
 }
 
-fn in_json(model: &ModelInfo) -> serde_json::Value {
+fn parameters_in_json(
+    parameters: impl Iterator<Item = &'static ParameterInfo>,
+) -> serde_json::Value {
+    let one = |p: &ParameterInfo| {
+        json!({
+            "name": p.name,
+            "expected": p.expected(),
+            "default": p.default_value().map(|v| v.to_string()),
+            "meaning": p.meaning,
+        })
+    };
+    parameters.map(one).collect()
+}
+
+fn in_json(model: &'static ModelInfo) -> serde_json::Value {
     let declared = ModelSpec::new(model.name)
         .map(|spec| (model.declares)(&spec))
         .ok();
@@ -222,12 +234,7 @@ fn in_json(model: &ModelInfo) -> serde_json::Value {
         "summary": model.summary,
         "paper": model.paper,
         "aliases": model.aliases.iter().map(|a| a.name).collect::<Vec<_>>(),
-        "parameters": model.parameters.iter().map(|p| json!({
-            "name": p.name,
-            "expected": p.expected(),
-            "default": p.default_value().map(|v| v.to_string()),
-            "meaning": p.meaning,
-        })).collect::<Vec<_>>(),
+        "parameters": parameters_in_json(model.parameters.iter()),
         "presets": presets::in_json(&presets::sets_of(model)),
         "declares": declared.map(|d| json!({
             "reciprocal": d.reciprocal,
@@ -247,6 +254,9 @@ fn eval(text: &str, wi: Angles, wo: Angles, json: bool) -> Result<(), Failure> {
     let f = model.eval(i, o);
     let f_cos = model.eval_cos(i, o);
     let pdf = model.pdf(i, o);
+    if let Some(error) = model.failure() {
+        return Err(error.into());
+    }
     if json {
         return print_json(&json!({
             "model": spec.to_string(),
