@@ -4,6 +4,7 @@
 
 mod arguments;
 mod brdf;
+mod ci;
 mod damaged;
 mod diff;
 mod environment;

@@ -79,10 +79,16 @@ pub(super) fn section(
         ("Model".into(), format!("{}: {}", info.name, info.summary)),
         ("Source".into(), info.paper.into()),
     ];
-    let values: Vec<String> = info
-        .parameters
-        .iter()
-        .filter_map(|p| Some(format!("{} = {}", p.name, spec.value(p.name)?)))
+    let values: Vec<String> = spec
+        .parameters()?
+        .into_iter()
+        .filter_map(|p| {
+            Some(format!(
+                "{} = {}",
+                p.name,
+                shortest(&spec.value(p.name)?.to_string())
+            ))
+        })
         .collect();
     if !values.is_empty() {
         section.facts.push(("Parameters".into(), values.join(", ")));
@@ -92,4 +98,30 @@ pub(super) fn section(
         section.plots = pictures::of_model(&spec.to_string(), &model, declares.relative_ior)?;
     }
     Ok(section)
+}
+
+/// A number of single precision with the digits that it needs there: 0.4, not 0.4000000059604645. Other text as it is.
+fn shortest(value: &str) -> String {
+    match value.parse::<f64>() {
+        Ok(x) if f64::from(x as f32) == x => (x as f32).to_string(),
+        _ => value.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_that_they_need() {
+        for (value, shown) in [
+            ("0.4000000059604645", "0.4"),
+            ("0.4", "0.4"),
+            ("10000000", "10000000"),
+            ("metal.wgsl", "metal.wgsl"),
+            ("1/0.5/0", "1/0.5/0"),
+        ] {
+            assert_eq!(shortest(value), shown);
+        }
+    }
 }
