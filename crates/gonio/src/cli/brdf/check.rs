@@ -338,7 +338,7 @@ mod tests {
             assert_eq!(property(p.name()), Ok(p));
         }
         let e = property("reciprocty").unwrap_err();
-        assert!(e.contains("`reciprocity`"), "{e}");
+        assert!(e.contains("'reciprocity'"), "{e}");
         assert!(property("xyz").unwrap_err().contains("sample-density"));
     }
 }
