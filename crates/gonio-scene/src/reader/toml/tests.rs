@@ -353,7 +353,7 @@ fn shaders_are_materials() {
     std::fs::write(folder.path().join("matt.wgsl"), shader).unwrap();
     let path = folder.path().join("scene.toml");
     let material = |text: &str| {
-        let shape = "[[shape]]\ntype = \"sphere\"\nmaterial = \"m\"\n";
+        let shape = "[[shape]]\nkind = \"sphere\"\nmaterial = \"m\"\n";
         std::fs::write(
             &path,
             format!("[[material]]\nname = \"m\"\n{text}\n{shape}"),
