@@ -5,7 +5,7 @@
 
 use gonio_num::dual::Dual;
 use gonio_num::expr::{
-    Arguments, Expr, Field, Function, Output, Parameter, RecordError, module, record,
+    Arguments, Expr, Field, Function, Language, Output, Parameter, RecordError, module, record,
 };
 use gonio_num::{Frame, Mask, Real, Table1, Table2, Table3, Vec3};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -95,9 +95,9 @@ fn record_microfacet() -> Function {
 #[test]
 fn a_microfacet_model_is_valid_and_exact() {
     let function = record_microfacet();
-    assert_valid(&function.wgsl);
-    let lines = function.wgsl.lines().count();
-    assert!(lines < 40, "{lines} lines\n{}", function.wgsl);
+    assert_valid(&function.wgsl());
+    let lines = function.wgsl().lines().count();
+    assert!(lines < 40, "{lines} lines\n{}", function.wgsl());
     for i in 0..500u32 {
         let at = |k: u32| ((i * 37 + k * 101) % 257) as f32 / 257.0;
         let wi = Vec3::new(at(1) - 0.5, at(2) - 0.5, at(3) - 0.1).normalize();
@@ -196,7 +196,7 @@ fn record_everything() -> Function {
 
 #[test]
 fn every_method_is_valid() {
-    assert_valid(&record_everything().wgsl);
+    assert_valid(&record_everything().wgsl());
 }
 
 proptest! {
@@ -227,25 +227,25 @@ fn the_text_is_readable() {
         (sum - shared) / (x - (y - Real::lit(0.1)))
     })
     .unwrap();
-    assert_valid(&function.wgsl);
+    assert_valid(&function.wgsl());
     let expected = "\
 fn shade(x: f32, y: f32) -> f32 {
-    let v1 = x + y;
-    let v2 = v1 * v1;
-    let v3 = exp(y);
-    var state4: f32 = 0.0f;
-    for (var step5 = 0u; step5 < 8u; step5++) {
+    let v1 = exp(y);
+    let v2 = x + y;
+    let v3 = v2 * v2;
+    var state4: f32 = 0.0;
+    for (var step5 = 0; step5 < 8; step5++) {
         let v6 = state4;
-        let v7 = v6 + v2 * f32(step5);
+        let v7 = v6 + v3 * f32(step5);
         state4 = v7;
-        if !(v7 < v3) {
+        if (v7 >= v1) {
             break;
         }
     }
-    return (state4 - v2) / (x - (y - 0.1f));
+    return (state4 - v3) / (x - (y - 0.1));
 }
 ";
-    assert_eq!(function.wgsl, expected);
+    assert_eq!(function.wgsl(), expected);
 }
 
 #[test]
@@ -260,7 +260,7 @@ fn outputs_of_every_kind() {
         [v, v * v, Real::lit(7.0), v.ln()]
     })
     .unwrap();
-    assert!(array.wgsl.contains("array<f32, 4>"));
+    assert!(array.wgsl().contains("array<f32, 4>"));
     let structure = record("structure_of", &parameters, |p| Output::Struct {
         name: "Sampled".into(),
         fields: vec![
@@ -272,11 +272,11 @@ fn outputs_of_every_kind() {
     type R1 = Expr;
     assert!(
         structure
-            .wgsl
-            .contains("struct Sampled {\n    wi: vec3<f32>,\n    pdf: f32,\n}")
+            .wgsl()
+            .contains("struct Sampled {\n    wi: vec3f,\n    pdf: f32,\n}")
     );
     for f in [&scalar, &vector, &array, &structure] {
-        assert_valid(&f.wgsl);
+        assert_valid(&f.wgsl());
     }
     assert_valid(&module(&[&scalar, &vector, &array, &structure, &record_everything()]).unwrap());
 }
@@ -296,11 +296,12 @@ fn literals_are_exact() {
         f32::NEG_INFINITY,
     ] {
         let function = record("literal", &[], |_| Expr::lit(f64::from(x))).unwrap();
-        assert_valid(&function.wgsl);
+        assert_valid(&function.wgsl());
         assert!(same(function.evaluate(&[])[0], x), "{x:e}");
         if x.is_finite() {
-            let text = function.wgsl.split("return ").nth(1).unwrap();
-            let text = text.split("f;").next().unwrap();
+            let text = function.wgsl();
+            let text = text.split("return ").nth(1).unwrap();
+            let text = text.split(';').next().unwrap();
             assert_eq!(text.parse::<f32>().unwrap().to_bits(), x.to_bits());
         }
     }
@@ -315,9 +316,9 @@ fn common_subexpressions_are_shared_and_constants_folded() {
         x.exp() * x.exp() + (Expr::lit(2.0) / Expr::lit(0.0)).recip() + Expr::one() * x
     })
     .unwrap();
-    assert_eq!(function.wgsl.matches("exp(").count(), 1);
-    assert!(!function.wgsl.contains("atan2") && !function.wgsl.contains('/'));
-    assert_valid(&function.wgsl);
+    assert_eq!(function.wgsl().matches("exp(").count(), 1);
+    assert!(!function.wgsl().contains("atan2") && !function.wgsl().contains('/'));
+    assert_valid(&function.wgsl());
 }
 
 #[test]
@@ -334,8 +335,13 @@ fn misuse_is_refused() {
         "a refused inner recording must leave the outer one whole"
     );
 
-    let name = |s: &str| Err(RecordError::Name { name: s.into() });
-    let wrong = |s: &str| record(s, &x, identity).map(|f| f.wgsl);
+    let name = |s: &str| {
+        Err(RecordError::Name {
+            name: s.into(),
+            language: Language::Wgsl,
+        })
+    };
+    let wrong = |s: &str| record(s, &x, identity).map(|f| f.wgsl());
     assert_eq!(wrong("while"), name("while"));
     assert_eq!(wrong("a b"), name("a b"));
     assert_eq!(wrong("x"), Err(RecordError::Duplicate { name: "x".into() }));
@@ -447,7 +453,7 @@ fn a_panic_ends_its_recording() {
 fn threads_record_side_by_side() {
     let texts: Vec<String> = std::thread::scope(|s| {
         let threads: Vec<_> = (0..8)
-            .map(|_| s.spawn(|| record_everything().wgsl))
+            .map(|_| s.spawn(|| record_everything().wgsl()))
             .collect();
         threads.into_iter().map(|t| t.join().unwrap()).collect()
     });

@@ -1,7 +1,10 @@
 //! [`record`] and what it takes and gives.
 
+use super::language::{Dialect, Type};
+use super::source;
 use super::tape::{self, Graph, Id};
-use super::{Expr, Handle, evaluate, names, print};
+use super::vectors::{Value, Vectors};
+use super::{Expr, Handle, Language, evaluate, names};
 use crate::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,14 +15,24 @@ pub enum RecordError {
     /// [`record`] was called inside the body of another recording on the same thread.
     #[error("a recording can't start inside the body of another one on the same thread")]
     Nested,
-    /// A name that WGSL, or the printer, doesn't allow.
+    /// A name that the language, or the printer, doesn't allow.
     #[error(
         "`{name}` can't be a name in shader code: expected a letter, then letters, digits or `_`, no word \
-         that WGSL reserves and no `gonio_` in front"
+         that {} reserves and no `gonio_` in front", .language.name().to_uppercase()
     )]
     Name {
         /// The name found.
         name: String,
+        /// The language that is printed.
+        language: Language,
+    },
+    /// A function that returns an array, in a language whose functions can't.
+    #[error("the function `{name}` returns an array, which no function of {} can", .language.name().to_uppercase())]
+    ArrayReturned {
+        /// The function's name.
+        name: String,
+        /// The language.
+        language: Language,
     },
     /// Two things with the same name.
     #[error("two things are named `{name}` in the same shader code")]
@@ -56,26 +69,45 @@ pub enum RecordError {
 }
 
 /// A parameter of a recorded function.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
-    name: String,
-    is_vector: bool,
+    pub(super) name: String,
+    pub(super) kind: Type,
+    /// Its value, if it is a constant of the module that reads like a parameter.
+    pub(super) fixed: Option<[f32; 3]>,
 }
 
 impl Parameter {
-    /// A number, `f32`.
+    /// A number.
     pub fn scalar(name: impl Into<String>) -> Self {
+        Self::new(name, Type::Number)
+    }
+
+    /// A vector.
+    pub fn vector(name: impl Into<String>) -> Self {
+        Self::new(name, Type::Vector)
+    }
+
+    /// A colour: three numbers, which most languages call a vector too.
+    pub fn colour(name: impl Into<String>) -> Self {
+        Self::new(name, Type::Colour)
+    }
+
+    fn new(name: impl Into<String>, kind: Type) -> Self {
         Self {
             name: name.into(),
-            is_vector: false,
+            kind,
+            fixed: None,
         }
     }
 
-    /// A vector, `vec3<f32>`.
-    pub fn vector(name: impl Into<String>) -> Self {
+    /// The parameter as a named constant of the module instead of an argument of the function, for a reader to change. A number takes
+    /// the first component. It stands in the text only where the function needs it.
+    #[must_use]
+    pub fn fixed(self, value: [f32; 3]) -> Self {
         Self {
-            name: name.into(),
-            is_vector: true,
+            fixed: Some(value),
+            ..self
         }
     }
 
@@ -84,19 +116,13 @@ impl Parameter {
         &self.name
     }
 
-    pub(super) fn wgsl_type(&self) -> &'static str {
-        if self.is_vector { "vec3<f32>" } else { "f32" }
+    /// How many numbers it is.
+    pub(super) fn width(&self) -> usize {
+        if self.is_vector() { 3 } else { 1 }
     }
 
-    /// The texts of its components.
-    pub(super) fn components(&self) -> Vec<String> {
-        if self.is_vector {
-            ["x", "y", "z"]
-                .map(|c| format!("{}.{c}", self.name))
-                .to_vec()
-        } else {
-            vec![self.name.clone()]
-        }
+    fn is_vector(&self) -> bool {
+        matches!(self.kind, Type::Vector | Type::Colour)
     }
 }
 
@@ -116,10 +142,10 @@ impl Arguments {
         Self::component(self.find(name, false))
     }
 
-    /// The vector named `name`.
+    /// The vector or colour named `name`.
     ///
     /// # Panics
-    /// If no parameter [`Parameter::vector`] has this name.
+    /// If no parameter [`Parameter::vector`] or [`Parameter::colour`] has this name.
     pub fn vector(&self, name: &str) -> Vec3<Expr> {
         let first = self.find(name, true);
         Vec3::new(
@@ -151,11 +177,13 @@ impl Arguments {
 /// What a recorded function returns.
 #[derive(Debug, Clone)]
 pub enum Output {
-    /// `f32`.
+    /// A number.
     Scalar(Expr),
-    /// `vec3<f32>`.
+    /// A vector.
     Vector(Vec3<Expr>),
-    /// `array<f32, N>`.
+    /// A colour: three numbers, which most languages call a vector too.
+    Colour(Vec3<Expr>),
+    /// An array of numbers, in WGSL and GLSL.
     Array(Vec<Expr>),
     /// A structure, which is declared too.
     Struct {
@@ -178,14 +206,16 @@ pub struct Field {
 /// The value of a [`Field`].
 #[derive(Debug, Clone)]
 pub enum FieldValue {
-    /// `f32`.
+    /// A number.
     Scalar(Expr),
-    /// `vec3<f32>`.
+    /// A vector.
     Vector(Vec3<Expr>),
+    /// A colour.
+    Colour(Vec3<Expr>),
 }
 
 impl Field {
-    /// A member of type `f32`.
+    /// A number.
     pub fn scalar(name: impl Into<String>, value: Expr) -> Self {
         Self {
             name: name.into(),
@@ -193,11 +223,19 @@ impl Field {
         }
     }
 
-    /// A member of type `vec3<f32>`.
+    /// A vector.
     pub fn vector(name: impl Into<String>, value: Vec3<Expr>) -> Self {
         Self {
             name: name.into(),
             value: FieldValue::Vector(value),
+        }
+    }
+
+    /// A colour.
+    pub fn colour(name: impl Into<String>, value: Vec3<Expr>) -> Self {
+        Self {
+            name: name.into(),
+            value: FieldValue::Colour(value),
         }
     }
 }
@@ -224,29 +262,105 @@ impl Output {
     fn expressions(&self) -> Vec<Expr> {
         match self {
             Self::Scalar(x) => vec![*x],
-            Self::Vector(v) => v.to_array().to_vec(),
+            Self::Vector(v) | Self::Colour(v) => v.to_array().to_vec(),
             Self::Array(a) => a.clone(),
             Self::Struct { fields, .. } => fields
                 .iter()
                 .flat_map(|f| match f.value {
                     FieldValue::Scalar(x) => vec![x],
-                    FieldValue::Vector(v) => v.to_array().to_vec(),
+                    FieldValue::Vector(v) | FieldValue::Colour(v) => v.to_array().to_vec(),
                 })
                 .collect(),
         }
     }
 
-    pub(super) fn ids(&self) -> Vec<Id> {
-        self.expressions().iter().map(|x| x.0.id).collect()
+    fn returned(&self) -> Returned {
+        let one = |x: &Expr| (Type::Number, vec![x.0.id]);
+        let three = |kind: Type, v: &Vec3<Expr>| (kind, v.to_array().map(|x| x.0.id).to_vec());
+        let parts = match self {
+            Self::Scalar(x) => vec![one(x)],
+            Self::Vector(v) => vec![three(Type::Vector, v)],
+            Self::Colour(v) => vec![three(Type::Colour, v)],
+            Self::Array(a) => a.iter().map(one).collect(),
+            Self::Struct { fields, .. } => fields
+                .iter()
+                .map(|f| match &f.value {
+                    FieldValue::Scalar(x) => one(x),
+                    FieldValue::Vector(v) => three(Type::Vector, v),
+                    FieldValue::Colour(v) => three(Type::Colour, v),
+                })
+                .collect(),
+        };
+        let structure = match self {
+            Self::Struct { name, fields } => Some(Structure {
+                name: name.clone(),
+                fields: fields.iter().map(|f| f.name.clone()).collect(),
+            }),
+            _ => None,
+        };
+        Returned {
+            parts,
+            structure,
+            is_array: matches!(self, Self::Array(_)),
+        }
+    }
+}
+
+/// What a function returns, by the places of its numbers on the tape.
+#[derive(Debug, Clone)]
+pub(super) struct Returned {
+    parts: Vec<(Type, Vec<Id>)>,
+    pub structure: Option<Structure>,
+    pub is_array: bool,
+}
+
+/// The name of a structure, and those of its members.
+#[derive(Debug, Clone)]
+pub(super) struct Structure {
+    pub name: String,
+    pub fields: Vec<String>,
+}
+
+impl Returned {
+    pub fn ids(&self) -> Vec<Id> {
+        self.parts.iter().flat_map(|(_, ids)| ids.clone()).collect()
     }
 
-    pub(super) fn wgsl_type(&self) -> String {
-        match self {
-            Self::Scalar(_) => "f32".into(),
-            Self::Vector(_) => "vec3<f32>".into(),
-            Self::Array(a) => format!("array<f32, {}>", a.len()),
-            Self::Struct { name, .. } => name.clone(),
+    /// The vectors among its parts.
+    pub fn vectors(&self) -> Vec<([Id; 3], Type)> {
+        let three = |(kind, ids): &(Type, Vec<Id>)| match ids.as_slice() {
+            [x, y, z] => Some(([*x, *y, *z], *kind)),
+            _ => None,
+        };
+        self.parts.iter().filter_map(three).collect()
+    }
+
+    /// Its parts as values to be printed; `vectors` were found from [`Returned::vectors`].
+    pub fn values(&self, vectors: &Vectors<'_>) -> Vec<Value> {
+        let value = |(kind, ids): &(Type, Vec<Id>)| match ids.as_slice() {
+            [x, y, z] => Value::Three(vectors.known([*x, *y, *z], *kind)),
+            ids => Value::One(ids[0]),
+        };
+        self.parts.iter().map(value).collect()
+    }
+
+    pub fn type_name(&self, d: &Dialect) -> String {
+        match &self.structure {
+            Some(structure) => structure.name.clone(),
+            None if self.is_array => d.array(self.parts.len()),
+            None => d.type_name(self.parts[0].0).into(),
         }
+    }
+
+    /// The declaration of the structure that is called `name`.
+    pub fn declaration(&self, d: &Dialect, name: &str) -> String {
+        let fields = self.structure.iter().flat_map(|s| &s.fields);
+        let mut text = format!("struct {name} {{\n");
+        for (field, (kind, _)) in fields.zip(&self.parts) {
+            let end = if d.is_wgsl() { "," } else { ";" };
+            text += &format!("    {}{end}\n", d.typed(d.type_name(*kind), field));
+        }
+        text + if d.is_wgsl() { "}\n" } else { "};\n" }
     }
 }
 
@@ -255,14 +369,9 @@ impl Output {
 pub struct Function {
     /// Its name in the shader code.
     pub name: String,
-    /// Complete WGSL: the function and all that it needs (tables, structures). To have several functions in one shader,
-    /// see [`module`].
-    pub wgsl: String,
-    declarations: BTreeMap<String, String>,
-    text: String,
-    parameters: Vec<Parameter>,
-    graph: Graph,
-    outputs: Vec<Id>,
+    pub(super) parameters: Vec<Parameter>,
+    pub(super) graph: Graph,
+    pub(super) returned: Returned,
 }
 
 impl Function {
@@ -271,21 +380,41 @@ impl Function {
         &self.parameters
     }
 
+    /// Complete WGSL: the function and all that it needs (tables, structures). For several functions in one shader and for other
+    /// languages, see [`source`](super::source()).
+    pub fn wgsl(&self) -> String {
+        source::module(&[self]).expect("invariant: the names were checked when it was recorded")
+    }
+
+    /// How many operations it takes; those in a loop count once.
+    pub fn operations(&self) -> usize {
+        self.graph.operations(&self.returned.ids())
+    }
+
     /// The function's value, run on `f32`: what the recorded formula over `f32` gives, to the bit.
     ///
-    /// `arguments` are the parameters in order, a vector as three numbers; so is the result.
+    /// `arguments` are the parameters in order but for the fixed ones, a vector as three numbers; so is the result.
     ///
     /// # Panics
     /// If the number of arguments is wrong.
     pub fn evaluate(&self, arguments: &[f32]) -> Vec<f32> {
-        let expected: usize = self.parameters.iter().map(|p| p.components().len()).sum();
+        let asked = self.parameters.iter().filter(|p| p.fixed.is_none());
+        let expected: usize = asked.map(Parameter::width).sum();
         assert!(
             arguments.len() == expected,
             "`{}` takes {expected} numbers, not {}",
             self.name,
             arguments.len()
         );
-        evaluate::evaluate(&self.graph, arguments, &self.outputs)
+        let mut given = arguments.iter();
+        let mut all = Vec::new();
+        for p in &self.parameters {
+            match p.fixed {
+                Some(value) => all.extend(&value[..p.width()]),
+                None => all.extend(given.by_ref().take(p.width())),
+            }
+        }
+        evaluate::evaluate(&self.graph, &all, &self.returned.ids())
     }
 }
 
@@ -302,9 +431,35 @@ pub fn record<O: Into<Output>>(
     parameters: &[Parameter],
     body: impl FnOnce(&Arguments) -> O,
 ) -> Result<Function, RecordError> {
+    record_as(name, parameters, body, false)
+}
+
+/// As [`record`], for people to read: what has no effect on a finite number is left out, such as x·0, x + 0 and limits within limits. The
+/// values are those of the formula but for the sign of a zero, and the last digit of a mean of three equal numbers.
+///
+/// # Errors
+/// As [`record`].
+///
+/// # Panics
+/// As [`record`].
+pub fn record_simplified<O: Into<Output>>(
+    name: &str,
+    parameters: &[Parameter],
+    body: impl FnOnce(&Arguments) -> O,
+) -> Result<Function, RecordError> {
+    record_as(name, parameters, body, true)
+}
+
+fn record_as<O: Into<Output>>(
+    name: &str,
+    parameters: &[Parameter],
+    body: impl FnOnce(&Arguments) -> O,
+    simplify: bool,
+) -> Result<Function, RecordError> {
+    let check = |name: &str| names::check(Language::Wgsl, name);
     let mut known = BTreeSet::new();
     for n in std::iter::once(name).chain(parameters.iter().map(Parameter::name)) {
-        names::check(n)?;
+        check(n)?;
         if !known.insert(n.to_owned()) {
             return Err(RecordError::Duplicate { name: n.into() });
         }
@@ -312,11 +467,11 @@ pub fn record<O: Into<Output>>(
     let mut found = BTreeMap::new();
     let mut component = 0;
     for p in parameters {
-        found.insert(p.name.clone(), (p.is_vector, component));
-        component += p.components().len() as u32;
+        found.insert(p.name.clone(), (p.is_vector(), component));
+        component += p.width() as u32;
     }
 
-    let recording = tape::Recording::start()?;
+    let recording = tape::Recording::start(simplify)?;
     let output: Output = body(&Arguments { found }).into();
     // Refuses values of other recordings and of closed loops, as every other use does.
     for x in output.expressions() {
@@ -327,16 +482,10 @@ pub fn record<O: Into<Output>>(
     if let Some(error) = tape.error {
         return Err(error);
     }
-    let mut also_known = Vec::new();
-    for table in tape.graph.table_names() {
-        also_known.extend([table.to_owned(), format!("{table}_at")]);
-    }
-    if let Output::Struct { name, fields } = &output {
-        names::check(name)?;
-        also_known.push(name.clone());
+    if let Output::Struct { fields, .. } = &output {
         let mut members = BTreeSet::new();
         for f in fields {
-            names::check(&f.name)?;
+            check(&f.name)?;
             if !members.insert(&f.name) {
                 return Err(RecordError::Duplicate {
                     name: f.name.clone(),
@@ -344,68 +493,16 @@ pub fn record<O: Into<Output>>(
             }
         }
     }
-    for n in also_known {
-        if known.contains(&n) {
-            return Err(RecordError::Duplicate { name: n });
-        }
-        known.insert(n);
-    }
-    let outputs = output.ids();
-    if outputs.is_empty() {
+    let returned = output.returned();
+    if returned.ids().is_empty() {
         return Err(RecordError::NoOutput { name: name.into() });
     }
-
-    let printed = print::print(&tape.graph, name, parameters, &output, known);
-    let mut wgsl = joined(&printed.declarations);
-    wgsl.push_str(&printed.function);
-    Ok(Function {
+    let function = Function {
         name: name.into(),
-        wgsl,
-        declarations: printed.declarations,
-        text: printed.function,
         parameters: parameters.to_vec(),
         graph: tape.graph,
-        outputs,
-    })
-}
-
-/// WGSL of several functions together; what more than one of them needs is declared once.
-///
-/// # Errors
-/// If two functions, or two different declarations, have the same name.
-pub fn module(functions: &[&Function]) -> Result<String, RecordError> {
-    let mut declarations = BTreeMap::new();
-    let mut texts: BTreeMap<&str, &str> = BTreeMap::new();
-    for f in functions {
-        for (name, text) in &f.declarations {
-            let before = declarations.insert(name.clone(), text.clone());
-            if before.is_some_and(|b| b != *text) {
-                return Err(RecordError::Duplicate { name: name.clone() });
-            }
-        }
-        if texts.insert(&f.name, &f.text).is_some() {
-            let name = f.name.clone();
-            return Err(RecordError::Duplicate { name });
-        }
-    }
-    if let Some(name) = texts.keys().find(|name| declarations.contains_key(**name)) {
-        return Err(RecordError::Duplicate {
-            name: (*name).into(),
-        });
-    }
-    let mut wgsl = joined(&declarations);
-    for f in functions {
-        wgsl.push_str(&f.text);
-        wgsl.push('\n');
-    }
-    Ok(wgsl)
-}
-
-fn joined(declarations: &BTreeMap<String, String>) -> String {
-    let mut text = String::new();
-    for declaration in declarations.values() {
-        text.push_str(declaration);
-        text.push('\n');
-    }
-    text
+        returned,
+    };
+    source::check(&[&function], Language::Wgsl, "")?;
+    Ok(function)
 }

@@ -1,9 +1,9 @@
 //! [`Expr`], the number that records a formula and prints it as shader code.
 //!
 //! [`record`] runs a formula over [`Real`] once, on expressions instead of numbers. What it did becomes a [`Function`]: a
-//! complete WGSL function (naga translates it to GLSL, HLSL, MSL and SPIR-V), and a graph that [`Function::evaluate`] runs on
+//! function that is printed in WGSL, GLSL, HLSL, MSL or OSL ([`source()`]), and a graph that [`Function::evaluate`] runs on
 //! `f32`, to the bit as the formula itself would. Common subexpressions are shared, constants are folded, and
-//! what doesn't change in a loop is moved out of it. A shader compiler may fuse and reorder, and its elementary functions
+//! what doesn't change in a loop is moved out of it; in the text, operations on three components become ones on vectors. A shader compiler may fuse and reorder, and its elementary functions
 //! are its own: on the GPU expect differences around 10⁻⁵, never equal bits. WGSL also lets a compiler assume that no
 //! value is NaN or infinite.
 //!
@@ -21,21 +21,30 @@
 //!     &[Parameter::scalar("f0"), Parameter::vector("wi")],
 //!     |p| schlick(p.scalar("f0"), p.vector("wi").z),
 //! )?;
-//! assert!(function.wgsl.contains("fn fresnel(f0: f32, wi: vec3<f32>) -> f32"));
+//! assert!(function.wgsl().contains("fn fresnel(f0: f32, wi: vec3f) -> f32"));
 //! assert_eq!(function.evaluate(&[0.04, 0.0, 0.6, 0.8]), [schlick(0.04f32, 0.8)]);
 //! # Ok::<(), gonio_num::expr::RecordError>(())
 //! ```
 
 mod evaluate;
 mod function;
+mod language;
 mod names;
 mod print;
+mod simplify;
+mod source;
 mod tables;
 mod tape;
+mod text;
+mod uses;
+mod vectors;
 
 pub use function::{
-    Arguments, Field, FieldValue, Function, Output, Parameter, RecordError, module, record,
+    Arguments, Field, FieldValue, Function, Output, Parameter, RecordError, record,
+    record_simplified,
 };
+pub use language::Language;
+pub use source::{Source, module, source};
 
 use crate::{LoopState, Mask, Real, Table1, Table2, Table3};
 use std::marker::PhantomData;

@@ -1,101 +1,181 @@
-//! WGSL text of tables and their look-ups.
+//! The text of tables and of their look-ups, and of what languages leave open.
 
+use super::language::{Constants, Dialect, Type};
 use crate::{Table1, Table2, Table3};
 use std::fmt::Write;
 
 /// Samples a line.
 const COLUMNS: usize = 8;
 
-fn samples(name: &str, data: &[f32]) -> String {
+/// A table's samples, as a constant of the module; nothing if the look-up holds them.
+fn samples(d: &Dialect, name: &str, data: &[f32]) -> String {
     let count = data.len();
-    let mut text = format!("var<private> {name}: array<f32, {count}> = array<f32, {count}>(\n");
-    for row in data.chunks(COLUMNS) {
-        let row: Vec<String> = row.iter().map(|x| format!("{x:?}f")).collect();
-        let _ = writeln!(text, "    {},", row.join(", "));
+    let rows = rows(d, data, 1);
+    match d.constants {
+        Constants::Const => format!("const {name} = array<f32, {count}>(\n{rows}\n);\n\n"),
+        Constants::Keyword(word) if d.array_calls => {
+            format!("{word} float {name}[{count}] = float[{count}](\n{rows}\n);\n\n")
+        }
+        Constants::Keyword(word) => {
+            format!("{word} float {name}[{count}] = {{\n{rows}\n}};\n\n")
+        }
+        Constants::Macro => String::new(),
     }
-    text.push_str(");\n");
-    text
 }
 
-/// The samples and `fn NAME_at(x: f32) -> f32`, in the operations of [`Real::table1`](crate::Real::table1).
-pub(super) fn table1(t: &Table1) -> String {
-    let (name, last) = (t.name, t.data.len() - 1);
+/// The samples as a local array, in a language that has no constants of a module.
+fn local_samples(d: &Dialect, name: &str, data: &[f32]) -> String {
+    match d.constants {
+        Constants::Macro => {
+            let rows = rows(d, data, 2);
+            format!("    float {name}[{}] = {{\n{rows}\n    }};\n", data.len())
+        }
+        _ => String::new(),
+    }
+}
+
+fn rows(d: &Dialect, data: &[f32], indent: usize) -> String {
+    let rows: Vec<String> = data
+        .chunks(COLUMNS)
+        .map(|row| {
+            let row: Vec<String> = row.iter().map(|x| d.number(*x)).collect();
+            format!("{}{}", "    ".repeat(indent), row.join(", "))
+        })
+        .collect();
+    rows.join(",\n")
+}
+
+/// The body of a function, line by line.
+struct Body<'a> {
+    d: &'a Dialect,
+    text: String,
+}
+
+impl Body<'_> {
+    fn number(&mut self, name: &str, text: &str) {
+        let kind = self.d.type_name(Type::Number);
+        let line = self.d.value(kind, name, text);
+        let _ = writeln!(self.text, "    {line}");
+    }
+
+    fn integer(&mut self, name: &str, text: &str) {
+        let line = self.d.value(self.d.integer, name, text);
+        let _ = writeln!(self.text, "    {line}");
+    }
+
+    /// Where `x` lies among `last` + 1 nodes: the cell `i`, and the place `w` in it.
+    fn cell(&mut self, x: &str, last: usize, [p, i, w]: [&str; 3]) {
+        let d = self.d;
+        let [zero, one, end] = [0.0, 1.0, last as f32].map(|x| d.number(x));
+        self.number(p, &format!("clamp({x}, {zero}, {one}) * {end}"));
+        let before = d.number(last as f32 - 1.0);
+        self.integer(i, &format!("{}(min({p}, {before}))", d.to_integer));
+        self.number(w, &format!("{p} - {}({i})", d.to_number));
+    }
+
+    fn mix(&self, a: &str, b: &str, t: &str) -> String {
+        let one = self.d.number(1.0);
+        format!("{a} * ({one} - {t}) + {b} * {t}")
+    }
+
+    fn function(self, name: &str, parameters: &[(&str, bool)], result: &str) -> String {
+        let d = self.d;
+        let number = d.type_name(Type::Number);
+        let parameters: Vec<String> = parameters
+            .iter()
+            .map(|(p, whole)| d.typed(if *whole { d.integer } else { number }, p))
+            .collect();
+        let head = d.head(name, &parameters, number);
+        format!("{head}{}    return {result};\n}}\n", self.text)
+    }
+}
+
+/// The samples and `NAME_at(x)`, in the operations of [`Real::table1`](crate::Real::table1).
+pub(super) fn table1(d: &Dialect, name: &str, t: &Table1) -> String {
+    let mut body = Body {
+        d,
+        text: local_samples(d, name, t.data),
+    };
+    body.cell("x", t.data.len() - 1, ["p", "i", "w"]);
+    let result = body.mix(&format!("{name}[i]"), &format!("{name}[i + 1]"), "w");
+    let function = body.function(&format!("{name}_at"), &[("x", false)], &result);
     format!(
-        "{}
-// Linear interpolation in {name}, x clamped to [0, 1].
-fn {name}_at(x: f32) -> f32 {{
-    let p = clamp(x, 0.0f, 1.0f) * {last}.0f;
-    let i = min(u32(p), {}u);
-    let w = p - f32(i);
-    return {name}[i] * (1.0f - w) + {name}[i + 1u] * w;
-}}
-",
-        samples(name, t.data),
-        last - 1
+        "{}// Linear interpolation in {name}, x clamped to [0, 1].\n{function}",
+        samples(d, name, t.data)
     )
 }
 
-/// The samples and `fn NAME_at(x: f32, y: f32) -> f32`, in the operations of [`Real::table2`](crate::Real::table2).
-pub(super) fn table2(t: &Table2) -> String {
-    let (name, width) = (t.name, t.width);
+/// The look-up between four neighbours in rows of `width`, of which `k` is the first.
+fn bilinear(body: &mut Body<'_>, name: &str, width: usize) -> String {
+    let low = body.mix(&format!("{name}[k]"), &format!("{name}[k + 1]"), "u");
+    let above = format!("{name}[k + {}]", width + 1);
+    let high = body.mix(&format!("{name}[k + {width}]"), &above, "u");
+    body.number("low", &low);
+    body.number("high", &high);
+    body.mix("low", "high", "v")
+}
+
+/// The samples and `NAME_at(x, y)`, in the operations of [`Real::table2`](crate::Real::table2).
+pub(super) fn table2(d: &Dialect, name: &str, t: &Table2) -> String {
+    let mut body = Body {
+        d,
+        text: local_samples(d, name, t.data),
+    };
+    body.cell("x", t.width - 1, ["p", "i", "u"]);
+    body.cell("y", t.height - 1, ["q", "j", "v"]);
+    body.integer("k", &format!("j * {} + i", t.width));
+    let result = bilinear(&mut body, name, t.width);
+    let parameters = [("x", false), ("y", false)];
+    let function = body.function(&format!("{name}_at"), &parameters, &result);
     format!(
-        "{}
-// Bilinear interpolation in {name}, x and y clamped to [0, 1].
-fn {name}_at(x: f32, y: f32) -> f32 {{
-    let p = clamp(x, 0.0f, 1.0f) * {}.0f;
-    let q = clamp(y, 0.0f, 1.0f) * {}.0f;
-    let i = min(u32(p), {}u);
-    let j = min(u32(q), {}u);
-    let u = p - f32(i);
-    let v = q - f32(j);
-    let k = j * {width}u + i;
-    let low = {name}[k] * (1.0f - u) + {name}[k + 1u] * u;
-    let high = {name}[k + {width}u] * (1.0f - u) + {name}[k + {}u] * u;
-    return low * (1.0f - v) + high * v;
-}}
-",
-        samples(name, t.data),
-        width - 1,
-        t.height - 1,
-        width - 2,
-        t.height - 2,
-        width + 1
+        "{}// Bilinear interpolation in {name}, x and y clamped to [0, 1].\n{function}",
+        samples(d, name, t.data)
     )
 }
 
-/// The samples and `fn NAME_at(x: f32, y: f32, z: f32) -> f32`, in the operations of
-/// [`Real::table3`](crate::Real::table3).
-pub(super) fn table3(t: &Table3) -> String {
-    let (name, row, slice) = (t.name, t.width, t.width * t.height);
-    let [x, y, z] = [t.width, t.height, t.depth].map(|n| n - 1);
+/// The samples and `NAME_at(x, y, z)`, in the operations of [`Real::table3`](crate::Real::table3).
+pub(super) fn table3(d: &Dialect, name: &str, t: &Table3) -> String {
+    let slice = t.width * t.height;
+    let mut inner = Body {
+        d,
+        text: local_samples(d, name, t.data),
+    };
+    let between = bilinear(&mut inner, name, t.width);
+    let parameters = [("k", true), ("u", false), ("v", false)];
+    let inner = inner.function(&format!("{name}_slice"), &parameters, &between);
+    let mut body = Body {
+        d,
+        text: String::new(),
+    };
+    body.cell("x", t.width - 1, ["p", "i", "u"]);
+    body.cell("y", t.height - 1, ["q", "j", "v"]);
+    body.cell("z", t.depth - 1, ["r", "l", "w"]);
+    body.integer("k", &format!("l * {slice} + j * {} + i", t.width));
+    body.number("near", &format!("{name}_slice(k, u, v)"));
+    body.number("far", &format!("{name}_slice(k + {slice}, u, v)"));
+    let result = body.mix("near", "far", "w");
+    let parameters = [("x", false), ("y", false), ("z", false)];
+    let function = body.function(&format!("{name}_at"), &parameters, &result);
     format!(
-        "{}
-// Trilinear interpolation in {name}, x, y and z clamped to [0, 1].
-fn {name}_at(x: f32, y: f32, z: f32) -> f32 {{
-    let p = clamp(x, 0.0f, 1.0f) * {x}.0f;
-    let q = clamp(y, 0.0f, 1.0f) * {y}.0f;
-    let r = clamp(z, 0.0f, 1.0f) * {z}.0f;
-    let i = min(u32(p), {}u);
-    let j = min(u32(q), {}u);
-    let k = min(u32(r), {}u);
-    let u = p - f32(i);
-    let v = q - f32(j);
-    let w = r - f32(k);
-    var at = k * {slice}u + j * {row}u + i;
-    var values = array<f32, 2>(0.0f, 0.0f);
-    for (var s = 0; s < 2; s++) {{
-        let low = {name}[at] * (1.0f - u) + {name}[at + 1u] * u;
-        let high = {name}[at + {row}u] * (1.0f - u) + {name}[at + {}u] * u;
-        values[s] = low * (1.0f - v) + high * v;
-        at += {slice}u;
-    }}
-    return values[0] * (1.0f - w) + values[1] * w;
-}}
-",
-        samples(name, t.data),
-        x - 1,
-        y - 1,
-        z - 1,
-        row + 1
+        "{}// Bilinear interpolation in a slice of {name}.\n{inner}\n\
+         // Trilinear interpolation in {name}, x, y and z clamped to [0, 1].\n{function}",
+        samples(d, name, t.data)
+    )
+}
+
+/// The angle of a point, which is left open at the origin.
+pub(super) fn atan2(d: &Dialect, name: &str) -> String {
+    let number = d.type_name(Type::Number);
+    let zero = d.number(0.0);
+    let parameters = [d.typed(number, "y"), d.typed(number, "x")];
+    let origin = format!("x == {zero} && y == {zero}");
+    let angle = format!("{}(y, x)", d.atan2);
+    let result = match d.is_wgsl() {
+        true => format!("select({angle}, {zero}, {origin})"),
+        false => format!("{origin} ? {zero} : {angle}"),
+    };
+    format!(
+        "// The angle of (x, y); 0 at the origin.\n{}    return {result};\n}}\n",
+        d.head(name, &parameters, number)
     )
 }

@@ -1,7 +1,7 @@
 //! The tape: the graph of operations that a recording leaves behind.
 
 use super::RecordError;
-use super::names;
+use super::{Language, names};
 use crate::table::{lookup1, lookup2, lookup3};
 use crate::{Real, Table1, Table2, Table3};
 use std::cell::RefCell;
@@ -110,6 +110,15 @@ impl Graph {
         names1.chain(names2).chain(names3)
     }
 
+    /// How many operations the outputs need; those in a loop count once.
+    pub fn operations(&self, outputs: &[Id]) -> usize {
+        let used = super::uses::raw_uses(self, outputs);
+        let operations = self.nodes.iter().zip(used);
+        operations
+            .filter(|(node, uses)| matches!(node, Node::Apply(..)) && *uses > 0)
+            .count()
+    }
+
     /// The operation on bit patterns: what the interpreter does, and what folds constants.
     pub fn apply(&self, op: Op, arguments: &[u32]) -> u32 {
         let x = |i: usize| f32::from_bits(arguments[i]);
@@ -158,6 +167,8 @@ pub(super) struct Tape {
     pub recording: u32,
     /// The first thing found wrong.
     pub error: Option<RecordError>,
+    /// Whether what has no effect on finite numbers is left out.
+    simplify: bool,
     known: HashMap<Node, Id>,
     innermost: Option<LoopId>,
 }
@@ -172,7 +183,9 @@ pub(super) struct Recording;
 
 impl Recording {
     /// Starts a recording on this thread.
-    pub fn start() -> Result<Self, RecordError> {
+    ///
+    /// - `simplify`: whether what has no effect on finite numbers is left out
+    pub fn start(simplify: bool) -> Result<Self, RecordError> {
         TAPE.with_borrow_mut(|tape| {
             if tape.is_some() {
                 return Err(RecordError::Nested);
@@ -183,6 +196,7 @@ impl Recording {
             });
             *tape = Some(Tape {
                 recording,
+                simplify,
                 ..Tape::default()
             });
             Ok(Self)
@@ -232,7 +246,7 @@ impl Tape {
         self.intern(Node::Parameter(component), None)
     }
 
-    fn literal(&self, id: Id) -> Option<u32> {
+    pub fn literal(&self, id: Id) -> Option<u32> {
         match self.graph.nodes[id as usize] {
             Node::Literal { bits, .. } => Some(bits),
             _ => None,
@@ -252,6 +266,11 @@ impl Tape {
             };
         }
         if let Some(simpler) = self.simplified(op, arguments) {
+            return simpler;
+        }
+        if self.simplify
+            && let Some(simpler) = self.simpler(op, arguments)
+        {
             return simpler;
         }
         let mut scope = None;
@@ -400,7 +419,7 @@ impl Tape {
             .iter()
             .try_fold(1usize, |product, side| product.checked_mul(*side));
         let size_is_right = sides.iter().all(|s| *s >= 2) && product == Some(data.len());
-        let problem = if let Err(error) = names::check(name) {
+        let problem = if let Err(error) = names::check(Language::Wgsl, name) {
             error
         } else if self.graph.table_names().any(|n| n == name) {
             RecordError::Duplicate { name: name.into() }
