@@ -37,6 +37,7 @@ mod showcase;
 mod spec;
 
 pub mod batch;
+pub mod export;
 pub mod measured;
 pub mod model;
 pub mod part;

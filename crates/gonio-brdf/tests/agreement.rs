@@ -147,7 +147,7 @@ fn recorded_functions_are_valid_and_have_the_same_bits() {
         let pdf = record_pdf(&model, "brdf_pdf").unwrap();
         let sample = record_sample(&model, "brdf_sample").unwrap();
         for function in [&eval, &pdf, &sample] {
-            assert_valid(&function.wgsl);
+            assert_valid(&function.wgsl());
         }
         for k in 0..COUNT {
             let (wi, wo, u) = (at(&inputs.wi, k), at(&inputs.wo, k), at(&inputs.u, k));

@@ -171,7 +171,8 @@ macro_rules! models {
                 match self { $(Self::$variant(_) => &const { $module::INFO },)* $(Self::$composite(_) => &const { $cmodule::INFO },)* }
             }
 
-            fn set(&mut self, parameter: &str, value: [R; 3]) {
+            /// Sets the parameter of this name; see [`Model::set_parameter`].
+            pub(crate) fn set(&mut self, parameter: &str, value: [R; 3]) {
                 match self { $(Self::$variant(m) => m.set(parameter, value),)* $(Self::$composite(m) => m.set(parameter, value),)* }
             }
         }

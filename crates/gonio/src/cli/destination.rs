@@ -1,4 +1,4 @@
-//! Where pictures go: checked before any time is spent.
+//! Where files go: checked before any time is spent.
 
 use super::failure::{Failure, nearest};
 use std::fs::{self, OpenOptions};

@@ -95,7 +95,8 @@ fn fault(words: &[String]) -> Option<String> {
             | brdf::Command::Eval { spec, .. }
             | brdf::Command::Check(brdf::check::Arguments {
                 spec: Some(spec), ..
-            }),
+            })
+            | brdf::Command::Export(brdf::export::Arguments { spec, .. }),
         ) if spec != "all" => spec,
         _ => return None,
     };

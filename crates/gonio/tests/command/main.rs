@@ -9,6 +9,7 @@ mod damaged;
 mod diff;
 mod environment;
 mod exec;
+mod export;
 mod interrupt;
 mod measure;
 mod plot;

@@ -3,6 +3,7 @@
 pub(in crate::cli) mod check;
 mod convert;
 mod exec;
+pub(in crate::cli) mod export;
 mod files;
 mod info;
 mod pictures;
@@ -67,6 +68,9 @@ pub(super) enum Command {
     /// A measured file or a model as a file of another format or layout, and what that costs
     #[command(after_help = convert::help())]
     Convert(Box<convert::Arguments>),
+    /// A model as shader code: WGSL, GLSL, HLSL, MSL or OSL
+    #[command(after_help = export::help())]
+    Export(export::Arguments),
     /// Is it physical? Reciprocity, energy, isotropy, sampling, each with a bound and a witness
     #[command(after_help = check::HELP)]
     Check(check::Arguments),
@@ -89,6 +93,7 @@ pub(super) fn run(command: Command) -> Result<(), Failure> {
         Command::Eval { spec, wi, wo, json } => eval(&spec, wi, wo, json),
         Command::Info { file, json } => info::run(&file, json),
         Command::Convert(arguments) => convert::run(*arguments),
+        Command::Export(arguments) => export::run(arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Plot(arguments) => plot::run(*arguments),
     }
