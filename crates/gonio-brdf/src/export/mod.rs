@@ -108,6 +108,13 @@ pub fn obstacle(spec: &ModelSpec) -> Option<(String, String)> {
                 .into(),
         ));
     }
+    if spec.name == "shader" {
+        return Some((
+            "a shader that was read from a file can't be exported: it is shader code already"
+                .into(),
+            "use the file itself".into(),
+        ));
+    }
     if spec.word("interreflection") == "random-walk" {
         return Some((
             format!(
