@@ -35,6 +35,7 @@ mod parameter;
 mod shader_file;
 mod showcase;
 mod spec;
+mod sweep;
 
 pub mod batch;
 pub mod export;
@@ -54,3 +55,4 @@ pub use parameter::{Kind, ParameterInfo, Value};
 pub use registry::{Alias, Declares, ModelInfo};
 pub use showcase::showcase;
 pub use spec::ModelSpec;
+pub use sweep::{space, sweep};

@@ -23,6 +23,7 @@ mod settings;
 pub mod specimen;
 pub mod statistics;
 mod subject;
+mod sweep;
 mod table;
 mod verdict;
 
@@ -31,6 +32,7 @@ pub use reflection::{EvalFn, PdfFn, Reflection, SampleFn, SubjectFailed, Subject
 pub use report::Report;
 pub use settings::{Effort, Precision, Settings};
 pub use subject::{Expectation, Subject};
+pub use sweep::{Axis, Point, Range, Setting, SweepReport, Worst, points};
 pub use verdict::{Direction, Interval, Outcome, Property, Value, Verdict, Witness};
 
 #[cfg(doctest)]

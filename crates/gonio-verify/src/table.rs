@@ -1,6 +1,7 @@
 //! A report as a table for people, 80 columns wide.
 
 use crate::report::Report;
+use crate::sweep::SweepReport;
 use crate::verdict::{Direction, Outcome, Verdict, Witness};
 
 /// Columns of a line.
@@ -25,7 +26,7 @@ impl Table {
         );
         table.line(&table.painted("2", &format!("  {head}")));
         for v in &report.verdicts {
-            table.row(v);
+            table.row(v, &evidence(v));
         }
         for v in report.verdicts.iter().filter(|v| v.violated()) {
             table.found(v);
@@ -36,6 +37,51 @@ impl Table {
             }
         }
         table.summary(report);
+        table.text
+    }
+
+    pub(crate) fn of_sweep(sweep: &SweepReport, colour: bool) -> String {
+        let mut table = Self {
+            colour,
+            text: String::new(),
+        };
+        table.title(&format!("{}, {} points", sweep.subject, sweep.points));
+        let names: Vec<&str> = sweep.axes.iter().map(|a| a.name.as_str()).collect();
+        table.paragraph(&format!("over {}", names.join(", ")), 2);
+        let head = format!(
+            "{:<7} {:<16} {:<10} {:<9}  {:<21} failed",
+            "verdict", "property", "figure", "bound", "worst at θi,φi→θo,φo"
+        );
+        table.line(&table.painted("2", &format!("  {head}")));
+        for w in &sweep.worst {
+            let sure = match w.points {
+                0 => String::new(),
+                n => format!("{} of {n}", w.failed),
+            };
+            table.row(&w.verdict, &sure);
+            if w.verdict.violated() || w.verdict.figure > 0.0 {
+                for line in broken(&w.at, ',', WIDTH - 10) {
+                    let line = table.painted("2", &line);
+                    table.line(&format!("{}{line}", " ".repeat(10)));
+                }
+            }
+        }
+        for w in sweep.worst.iter().filter(|w| w.failed > 0) {
+            table.found(&w.verdict);
+        }
+        let (word, style) = match sweep.passed() {
+            true => ("PASS", "1;32"),
+            false => ("FAIL", "1;31"),
+        };
+        let word = table.painted(style, word);
+        table.text += &format!(
+            "  {word}: {} points, {} failed",
+            sweep.points,
+            sweep.failed.len()
+        );
+        if sweep.skipped > 0 {
+            table.text += &format!("; {} combinations are not allowed", sweep.skipped);
+        }
         table.text
     }
 
@@ -61,7 +107,7 @@ impl Table {
         }
     }
 
-    fn row(&mut self, v: &Verdict) {
+    fn row(&mut self, v: &Verdict, sure: &str) {
         let (mark, style) = mark(v.outcome);
         let mark = self.painted(style, &format!("{mark:<7}"));
         let start = format!("  {mark} {:<16} ", v.property);
@@ -89,7 +135,6 @@ impl Table {
             None => format!("≤ {}", number(v.bound)),
         };
         let worst = v.witness.as_ref().map_or(String::new(), place);
-        let sure = evidence(v);
         self.line(&format!(
             "{start}{figure:<10} {bound:<9}  {worst:<21} {sure}"
         ));

@@ -1,4 +1,5 @@
-//! Broken reflection functions are caught, by the property that the fault belongs to.
+//! Broken reflection functions are caught where they are broken, and nothing else is blamed. (That each fault is caught by its property
+//! is what the book's page says, and its test holds it true.)
 
 // Helpers of tests are tests.
 #![allow(clippy::unwrap_used)]
@@ -13,16 +14,6 @@ fn look(specimen: &Specimen) -> Caught {
         println!("{}\n", caught.report);
     }
     caught
-}
-
-#[test]
-fn every_fault_is_caught_by_its_property() {
-    for specimen in specimen::broken() {
-        let caught = look(&specimen);
-        assert!(caught.as_it_should_be(), "{}", caught.report);
-        let witness = caught.verdict().unwrap().witness.as_ref();
-        assert!(witness.is_some(), "{}", caught.report);
-    }
 }
 
 /// The fault stands alone where it can: nothing else is blamed.

@@ -163,6 +163,9 @@ fn energy() -> Vec<Specimen> {
                     } else {
                         Lambertian(1.0).sample(wo, u)?
                     };
+                    if !above(s.wi, wo) {
+                        return None;
+                    }
                     let half = (s.wi + wo).normalize();
                     let f = r.eval(s.wi, wo)[0] * schlick(0.04, s.wi.dot(half)) + 0.96 / PI;
                     let pdf = 0.5 * r.pdf(s.wi, wo) + 0.5 * Lambertian(1.0).pdf(s.wi, wo);

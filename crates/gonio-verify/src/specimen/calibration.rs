@@ -34,8 +34,8 @@ impl Calibration {
     }
 }
 
-/// Counts of a short run: the tests are the same, with fewer looks, and so is their designed rate of false alarms.
-fn short() -> Settings {
+/// Counts of a short suite: the tests are those of every effort, with fewer looks, and so is their designed rate of false alarms.
+pub fn short() -> Settings {
     Settings {
         pairs: 100,
         directions: 2,
@@ -46,11 +46,15 @@ fn short() -> Settings {
     }
 }
 
-/// Checks each right function `runs` times in short, each time with another seed.
+/// Checks each right function `runs` times, each time with another seed.
 ///
 /// # Errors
 /// Never: they always answer.
-pub fn calibrate(runs: u64, progress: &Progress) -> Result<Calibration, SubjectFailed> {
+pub fn calibrate(
+    runs: u64,
+    settings: Settings,
+    progress: &Progress,
+) -> Result<Calibration, SubjectFailed> {
     let specimens = right();
     let done = std::sync::atomic::AtomicU64::new(0);
     let of = runs * specimens.len() as u64;
@@ -58,7 +62,7 @@ pub fn calibrate(runs: u64, progress: &Progress) -> Result<Calibration, SubjectF
         .flat_map(|run| specimens.iter().map(move |s| (s, run)))
         .collect();
     let reports = suites.par_iter().map(|(specimen, run)| {
-        let report = specimen.check(short(), &format!("{}, run {run}", specimen.name))?;
+        let report = specimen.check(settings, &format!("{}, run {run}", specimen.name))?;
         progress(
             1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed),
             of,

@@ -9,7 +9,7 @@ mod calibration;
 mod fault;
 mod right;
 
-pub use calibration::{Calibration, calibrate};
+pub use calibration::{Calibration, calibrate, short};
 pub use fault::{Broken, Caught};
 pub use right::{
     Bands, Coated, CosineDrawn, Frosted, Ggx, Lambertian, Mirror, Phong, Varnished, above,

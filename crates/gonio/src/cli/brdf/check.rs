@@ -15,6 +15,7 @@ pub(super) const HELP: &str = "\
 Examples:
   gonio brdf check ggx:metal=gold,roughness=0.3
   gonio brdf check all --effort quick
+  gonio brdf check gltf --sweep
   gonio brdf check sheen-charlie --max-loss 0.5
   gonio brdf check ggx:metal=gold --html gold.html --junit gold.xml
   gonio brdf check --exec 'python3 mine.py' --allow reciprocity
@@ -42,6 +43,12 @@ pub(in crate::cli) struct Arguments {
     /// How hard to look
     #[arg(long, value_enum, default_value_t = EffortName::Standard)]
     effort: EffortName,
+    /// Check points all over the space of the parameters that aren't given: ends, choices, and what is between
+    #[arg(
+        long, value_name = "POINTS", num_args = 0..=1, require_equals = true, default_missing_value = "256",
+        value_parser = clap::value_parser!(u64).range(1..=1_000_000), conflicts_with_all = ["exec", "effort"]
+    )]
+    sweep: Option<u64>,
     /// Properties that may be violated: reciprocity, energy, sample-density, …
     #[arg(long, value_name = "PROPERTY", value_delimiter = ',', value_parser = property)]
     allow: Vec<Property>,
@@ -146,6 +153,9 @@ fn named(text: &str, arguments: &Arguments) -> Result<Vec<Section>, Failure> {
     };
     let options = arguments.options();
     let bar = Bar::new();
+    if let Some(points) = arguments.sweep {
+        return swept(&specs, points as usize, &options, &bar, arguments.json);
+    }
     let mut sections = Vec::new();
     for (i, spec) in specs.iter().enumerate() {
         if spec.reads_files() {
@@ -165,6 +175,37 @@ fn named(text: &str, arguments: &Arguments) -> Result<Vec<Section>, Failure> {
         }
         let plots = arguments.files.shows_plots();
         sections.push(files::section(spec, report, began.elapsed(), plots)?);
+    }
+    bar.0.finish_and_clear();
+    Ok(sections)
+}
+
+/// Sweeps models over their parameters; the worst of each property is its verdict.
+fn swept(
+    specs: &[ModelSpec],
+    points: usize,
+    options: &CheckOptions,
+    bar: &Bar,
+    quiet: bool,
+) -> Result<Vec<Section>, Failure> {
+    let mut sections = Vec::new();
+    for (i, spec) in specs.iter().enumerate() {
+        bar.0.set_message(spec.to_string());
+        let began = Instant::now();
+        let progress = |done: u64, of: u64| {
+            let part = done as f64 / of.max(1) as f64;
+            bar.at((i as f64 + part) / specs.len() as f64);
+        };
+        let options = CheckOptions {
+            progress: Some(&progress),
+            ..options.clone()
+        };
+        let found = gonio_brdf::sweep(spec, points, &options)?;
+        if !quiet {
+            bar.0.suspend(|| print(&found.table(coloured())))?;
+        }
+        let report = found.report(Effort::Quick);
+        sections.push(files::section(spec, report, began.elapsed())?);
     }
     bar.0.finish_and_clear();
     Ok(sections)
@@ -253,8 +294,13 @@ fn again(arguments: &Arguments) -> String {
     if let Some(command) = &arguments.exec {
         words.extend(["--exec".into(), quoted(command)]);
     }
-    if let Some(effort) = arguments.effort.to_possible_value() {
+    if let Some(effort) = arguments.effort.to_possible_value()
+        && arguments.sweep.is_none()
+    {
         words.extend(["--effort".into(), effort.get_name().to_owned()]);
+    }
+    if let Some(points) = arguments.sweep {
+        words.push(format!("--sweep={points}"));
     }
     if !arguments.allow.is_empty() {
         let keys: Vec<String> = arguments.allow.iter().map(|p| p.key()).collect();
