@@ -29,7 +29,7 @@ allowed.";
 
 #[derive(clap::Args)]
 #[group(id = "check")]
-#[command(group = clap::ArgGroup::new("subject").required(true).args(["spec", "exec"]))]
+#[command(group = clap::ArgGroup::new("subject").required(true).args(["spec", "exec", "self_test"]))]
 pub(in crate::cli) struct Arguments {
     /// NAME, NAME:key=value,…, or all
     #[arg(conflicts_with = "exec")]
@@ -49,6 +49,9 @@ pub(in crate::cli) struct Arguments {
         value_parser = clap::value_parser!(u64).range(1..=1_000_000), conflicts_with_all = ["exec", "effort"]
     )]
     sweep: Option<u64>,
+    /// Check the checker: functions that are right, and ones with known faults
+    #[arg(long, conflicts_with_all = ["exec", "spec", "sweep", "effort", "json"])]
+    self_test: bool,
     /// Properties that may be violated: reciprocity, energy, sample-density, …
     #[arg(long, value_name = "PROPERTY", value_delimiter = ',', value_parser = property)]
     allow: Vec<Property>,
@@ -114,6 +117,9 @@ impl Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.self_test {
+        return super::self_test::run();
+    }
     // Before any time is spent.
     arguments.files.writable()?;
     let sections = match (&arguments.exec, &arguments.spec) {

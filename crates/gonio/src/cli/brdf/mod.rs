@@ -8,6 +8,7 @@ mod files;
 mod info;
 mod pictures;
 pub(in crate::cli) mod plot;
+mod self_test;
 
 use super::failure::Failure;
 use super::parse::{self, Angles};
