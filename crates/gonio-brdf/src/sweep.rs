@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// # Errors
 /// If there is no such model.
 pub fn space(spec: &ModelSpec) -> Result<Vec<Axis>, BrdfError> {
-    let free = |p: &&ParameterInfo| !spec.values.contains_key(p.name);
+    let free = |p: &&'static ParameterInfo| !spec.values.contains_key(p.name);
     let axis = |p: &ParameterInfo| {
         let range = match p.kind {
             Kind::Number { low, high, .. } => Range::Numbers {
@@ -28,7 +28,7 @@ pub fn space(spec: &ModelSpec) -> Result<Vec<Axis>, BrdfError> {
             Kind::Choice { options, .. } => {
                 Range::Words(options.iter().map(|w| (*w).to_owned()).collect())
             }
-            Kind::Path | Kind::Models => return None,
+            Kind::Path | Kind::Name | Kind::Models => return None,
         };
         Some(Axis {
             name: p.name.to_owned(),
@@ -36,8 +36,13 @@ pub fn space(spec: &ModelSpec) -> Result<Vec<Axis>, BrdfError> {
             optional: p.default_value().is_none(),
         })
     };
-    let parameters = spec.info()?.parameters.iter();
-    Ok(parameters.filter(free).filter_map(axis).collect())
+    // A shader's own parameters are among them.
+    let parameters = spec.parameters()?;
+    Ok(parameters
+        .into_iter()
+        .filter(free)
+        .filter_map(axis)
+        .collect())
 }
 
 /// The description with the values of `point`.
@@ -73,8 +78,7 @@ pub fn sweep(
     let axes = space(spec)?;
     // What is wrong with the description itself is to be said, and not to be left out point by point.
     if spec
-        .info()?
-        .parameters
+        .parameters()?
         .iter()
         .all(|p| p.default_value().is_some())
     {

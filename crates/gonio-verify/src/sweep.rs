@@ -55,7 +55,11 @@ pub type Point = Vec<Option<Setting>>;
 /// Source: Richtmyer 1951, "The evaluation of definite integrals, and a quasi-Monte-Carlo method based on the properties of
 /// algebraic numbers".
 fn even(dimensions: usize, k: usize) -> Vec<f64> {
-    let prime = |n: &u32| (2..*n).take_while(|d| d * d <= *n).all(|d| n % d != 0);
+    let prime = |n: &u32| {
+        (2..*n)
+            .take_while(|d| d * d <= *n)
+            .all(|d| !n.is_multiple_of(d))
+    };
     let primes = (2u32..).filter(prime).take(dimensions);
     primes
         .map(|p| (0.5 + f64::from(p).sqrt() * (k + 1) as f64).fract())

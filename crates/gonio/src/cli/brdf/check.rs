@@ -160,7 +160,7 @@ fn named(text: &str, arguments: &Arguments) -> Result<Vec<Section>, Failure> {
     let options = arguments.options();
     let bar = Bar::new();
     if let Some(points) = arguments.sweep {
-        return swept(&specs, points as usize, &options, &bar, arguments.json);
+        return swept(&specs, points as usize, &options, &bar, arguments);
     }
     let mut sections = Vec::new();
     for (i, spec) in specs.iter().enumerate() {
@@ -192,7 +192,7 @@ fn swept(
     points: usize,
     options: &CheckOptions,
     bar: &Bar,
-    quiet: bool,
+    arguments: &Arguments,
 ) -> Result<Vec<Section>, Failure> {
     let mut sections = Vec::new();
     for (i, spec) in specs.iter().enumerate() {
@@ -207,11 +207,12 @@ fn swept(
             ..options.clone()
         };
         let found = gonio_brdf::sweep(spec, points, &options)?;
-        if !quiet {
+        if !arguments.json {
             bar.0.suspend(|| print(&found.table(coloured())))?;
         }
         let report = found.report(Effort::Quick);
-        sections.push(files::section(spec, report, began.elapsed())?);
+        let plots = arguments.files.shows_plots();
+        sections.push(files::section(spec, report, began.elapsed(), plots)?);
     }
     bar.0.finish_and_clear();
     Ok(sections)
