@@ -17,8 +17,8 @@ fn the_space_is_what_the_description_leaves_open() {
     assert!(named("roughness").is_none() && named("distribution").is_none());
     let anisotropy = named("anisotropy").unwrap();
     assert!(!anisotropy.optional, "{anisotropy:?}");
-    // It has no effect unless it is set, and excludes the metal.
-    assert!(named("ior").unwrap().optional);
+    // It has no effect unless it is set, and then excludes the index of refraction.
+    assert!(named("metal").unwrap().optional);
     let Range::Words(metals) = &named("metal").unwrap().range else {
         panic!("a metal is a word")
     };
