@@ -4,7 +4,7 @@
 Run from the repository root, with `pip install mitsuba==3.9.1 numpy` in the Python that runs it (the variant llvm_ad_rgb needs LLVM's
 shared library, see DRJIT_LIBLLVM_PATH):
 
-    cargo build --release -p gonio-brdf --example throughput
+    cargo bench -p gonio-brdf --bench throughput --no-run
     python benches/peers/bench_brdf.py [--rounds 3] [--measured FILE.bsdf ...]
 
 Both read 2^20 random pairs of directions from memory and write what they find. Of each round the best of 15 runs counts, which other programs
@@ -47,7 +47,8 @@ def cases(measured):
 
 
 def gonio(description):
-    out = subprocess.run(["target/release/examples/throughput", description, str(COUNT)], check=True, capture_output=True)
+    command = ["cargo", "bench", "--quiet", "-p", "gonio-brdf", "--bench", "throughput", "--", description, str(COUNT)]
+    out = subprocess.run(command, check=True, stdout=subprocess.PIPE)
     return {name: float(rate) for name, rate in (line.split() for line in out.stdout.decode().splitlines())}
 
 

@@ -12,8 +12,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const INSTRUMENTATION: &str = "-C passes=sancov-module -C llvm-args=-sanitizer-coverage-level=4 \
     -C llvm-args=-sanitizer-coverage-inline-8bit-counters -C llvm-args=-sanitizer-coverage-pc-table \
     -C llvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing";
-/// Targets that run side by side.
-const AT_ONCE: usize = 2;
+/// Targets that run side by side: more than a small machine has cores, so that a minute for each is not a large part of all checks.
+const AT_ONCE: usize = 5;
 /// MiB that a target may use.
 const MEMORY_MB: u32 = 2048;
 /// Seconds that one input may take.

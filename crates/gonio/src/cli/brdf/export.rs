@@ -165,7 +165,8 @@ mod tests {
 
     #[test]
     fn every_model_has_a_name_that_every_language_takes() {
-        for info in registry::models() {
+        // What can't be exported needs none: "shader" is a word of OSL.
+        for info in registry::models().iter().filter(|m| m.recordable) {
             let aliases = info.aliases.iter().map(|a| a.name);
             for name in std::iter::once(info.name).chain(aliases) {
                 for language in Language::ALL {

@@ -1,6 +1,6 @@
 //! Prints how many values a second a batch of a model gives on one thread, for comparison with other programs.
 //!
-//! `cargo run --release -p gonio-brdf --example throughput -- 'ggx:alpha=0.2,metal=gold' 1048576`
+//! `cargo bench -p gonio-brdf --bench throughput -- 'ggx:alpha=0.2,metal=gold' 1048576`
 //!
 //! One line each for eval, pdf and sample: the name and 10⁶ values a second, the best of 15 runs over random directions (on the sphere
 //! for a model that transmits), which are read from memory and written there.
@@ -14,7 +14,8 @@ use std::time::Instant;
 const RUNS: usize = 15;
 
 fn main() -> Result<(), BrdfError> {
-    let mut arguments = std::env::args().skip(1);
+    // Cargo adds `--bench`.
+    let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
     let text = arguments.next().unwrap_or_else(|| "lambertian".into());
     let count = arguments
         .next()
