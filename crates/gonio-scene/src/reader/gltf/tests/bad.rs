@@ -42,7 +42,7 @@ fn bad_documents_are_refused_by_place() {
             d["materials"][0]["normalTexture"] = json!({"index": 0})
         }),
         ("camera 2", |d| d["nodes"][0]["camera"] = json!(2)),
-        ("finite", |d| {
+        ("number out of range", |d| {
             d["nodes"][0]["translation"] = json!([1e39, 0, 0])
         }),
         ("field of view", |d| {
