@@ -2,7 +2,7 @@
 
 use crate::format::{self, FileFormat};
 use crate::tonemap::{self, ToneMap};
-use crate::{ImageError, Layers, Limits, RawImage, atomic};
+use crate::{ImageError, Layers, Limits, RawImage, TexelFormat, atomic};
 use std::path::Path;
 
 /// A rectangle of linear RGB with Rec. 709 (sRGB) primaries, in whatever unit its maker says, usually radiance
@@ -112,7 +112,8 @@ impl Image {
         format::decode_image(format::MEMORY, bytes, limits)
     }
 
-    /// Writes an EXR (float, lossless), HDR or PNG (8-bit, sRGB transfer, clamped to [0, 1]) file, by the name's extension.
+    /// Writes an EXR (float, lossless), HDR, PNG (8-bit, sRGB transfer, clamped to [0, 1]), KTX2 or DDS (half floats) file,
+    /// by the name's extension.
     ///
     /// # Errors
     /// `Unsupported` for another extension; `Parameter` for an empty image, or one that the format cannot hold (HDR: finite
@@ -127,6 +128,13 @@ impl Image {
                 atomic::write(path, &bytes)
             }
             FileFormat::Png => self.write_png(path, ToneMap::Linear, 0.0),
+            kind @ (FileFormat::Ktx2 | FileFormat::Dds) => {
+                self.check_shape(path)?;
+                let format = TexelFormat::Half;
+                let faces: &[Image] = std::slice::from_ref(self);
+                let bytes = format::texture::encode(path, kind, &[faces], format)?;
+                atomic::write(path, &bytes)
+            }
             FileFormat::Jpeg => Err(ImageError::unsupported(
                 path.display().to_string(),
                 "writing JPEG",

@@ -10,6 +10,8 @@
 //! | Radiance HDR | flat, old and new run lengths; exposure; all eight orientations | new run lengths |
 //! | PNG | 1 to 16 bits, grey, palette, alpha | 8 and 16 bits, sRGB transfer |
 //! | JPEG | baseline and progressive, EXIF orientation | no |
+//! | KTX2 | one picture or a cube, with levels: half, float, RGB9E5, R11G11B10, BC6H, 8-bit codes | half, float, RGB9E5, BC6H |
+//! | DDS | the same; headers with and without DX10 | half, float, RGB9E5, BC6H, with DX10 |
 //!
 //! A reader decides by what the file holds, not by its name. It never alters values: what to do about a NaN is the
 //! caller's choice, and [`Image::scan`] finds it. [`Limits`] are checked before memory is taken. A writer makes a
@@ -40,6 +42,7 @@
 mod atomic;
 pub mod colormap;
 mod contain;
+mod cube;
 pub mod difference;
 mod error;
 mod format;
@@ -52,9 +55,10 @@ pub mod srgb;
 pub mod tonemap;
 
 pub use atomic::write as write_file;
+pub use cube::CubeMap;
 pub use error::ImageError;
 pub use exr::prelude::f16;
-pub use format::FileFormat;
+pub use format::{FileFormat, TexelFormat};
 pub use image::Image;
 pub use layers::{Channel, ChannelData, Chromaticities, Compression, Layers};
 pub use limits::Limits;

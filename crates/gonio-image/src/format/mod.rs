@@ -1,9 +1,15 @@
 //! One file a format, and the choice among them.
 
+mod dds;
+mod ktx2;
 pub(crate) mod openexr;
 mod primaries;
 pub(crate) mod radiance;
 pub(crate) mod raster;
+mod texel;
+pub(crate) mod texture;
+
+pub use texel::TexelFormat;
 
 pub(crate) use primaries::{apply as apply_matrix, to_rec709};
 
@@ -24,17 +30,23 @@ pub enum FileFormat {
     Png,
     /// JPEG, `.jpg` or `.jpeg`; read only.
     Jpeg,
+    /// Khronos texture container 2.0, `.ktx2`.
+    Ktx2,
+    /// DirectDraw Surface, `.dds`.
+    Dds,
 }
 
 impl FileFormat {
     /// The format whose files begin with these bytes.
     pub fn of_content(bytes: &[u8]) -> Option<Self> {
-        const MAGIC: [(&[u8], FileFormat); 5] = [
+        const MAGIC: [(&[u8], FileFormat); 7] = [
             (&[0x76, 0x2f, 0x31, 0x01], FileFormat::Exr),
             (b"#?RADIANCE", FileFormat::Hdr),
             (b"#?RGBE", FileFormat::Hdr),
             (b"\x89PNG\r\n\x1a\n", FileFormat::Png),
             (&[0xff, 0xd8, 0xff], FileFormat::Jpeg),
+            (&ktx2::IDENTIFIER, FileFormat::Ktx2),
+            (&dds::MAGIC, FileFormat::Dds),
         ];
         MAGIC
             .iter()
@@ -55,13 +67,15 @@ impl FileFormat {
             Some("hdr" | "pic") => Ok(Self::Hdr),
             Some("png") => Ok(Self::Png),
             Some("jpg" | "jpeg") => Ok(Self::Jpeg),
+            Some("ktx2") => Ok(Self::Ktx2),
+            Some("dds") => Ok(Self::Dds),
             other => Err(ImageError::unsupported(
                 path.display().to_string(),
                 other.map_or_else(
                     || "a name without an extension".into(),
                     |e| format!("the extension `{e}`"),
                 ),
-                "use .exr, .hdr or .png",
+                "use .exr, .hdr, .png, .ktx2 or .dds",
             )),
         }
     }
@@ -76,7 +90,12 @@ fn sniff(file: &str, bytes: &[u8]) -> Result<FileFormat, ImageError> {
             let start: Vec<String> = bytes.iter().take(8).map(|b| format!("{b:02x}")).collect();
             format!("bytes {}", start.join(" "))
         };
-        ImageError::format(file, "start", found, "EXR, Radiance HDR, PNG or JPEG")
+        ImageError::format(
+            file,
+            "start",
+            found,
+            "EXR, Radiance HDR, PNG, JPEG, KTX2 or DDS",
+        )
     })
 }
 
@@ -84,6 +103,7 @@ pub(crate) fn decode_image(file: &str, bytes: &[u8], limits: &Limits) -> Result<
     match sniff(file, bytes)? {
         FileFormat::Exr => openexr::decode_image(file, bytes, limits),
         FileFormat::Hdr => radiance::decode(file, bytes, limits),
+        FileFormat::Ktx2 | FileFormat::Dds => texture::decode_image(file, bytes, limits),
         kind @ (FileFormat::Png | FileFormat::Jpeg) => Ok(Image::from(&raster::decode(
             file,
             bytes,
@@ -101,8 +121,11 @@ pub(crate) fn decode_raw(
 ) -> Result<RawImage, ImageError> {
     match sniff(file, bytes)? {
         FileFormat::Exr => openexr::decode_raw(file, bytes, limits),
-        FileFormat::Hdr => {
-            let image = radiance::decode(file, bytes, limits)?;
+        kind @ (FileFormat::Hdr | FileFormat::Ktx2 | FileFormat::Dds) => {
+            let image = match kind {
+                FileFormat::Hdr => radiance::decode(file, bytes, limits)?,
+                _ => texture::decode_image(file, bytes, limits)?,
+            };
             Ok(RawImage {
                 width: image.width,
                 height: image.height,
