@@ -193,13 +193,29 @@ fn first_table(surface: Shape, masking: Masking) -> usize {
     4 * usize::from(surface == Shape::Ggx) + 2 * usize::from(masking == Masking::SmithCorrelated)
 }
 
+/// (α_min/α_max)^(5/4): what of the loss of the smoother round surface an anisotropic one has at least, in every direction.
+///
+/// Found by quadrature over both distributions and maskings, slope scales from 0.03 to 1, ratios from 0.01 to 0.97 and indices from 1/4 to
+/// 4: the least quotient of the losses is 0.963 at a ratio of 0.97, 0.438 at 0.5, and 0.087 at 0.1.
+#[inline(always)]
+fn roundness<R: Real>(alpha_x: R, alpha_y: R) -> R {
+    let ratio = alpha_x.min(alpha_y) / alpha_x.max(alpha_y);
+    ratio * ratio.sqrt().sqrt()
+}
+
 /// The lobe of light that leaves a boundary after several facets, for Beckmann's or the GGX distribution.
+///
+/// The tables are of round surfaces. In some directions an anisotropic one loses less than even the smoother round one
+/// does. So the loss is read at the smaller slope scale and
+/// multiplied by [`roundness`], which keeps it below the true one: too little is given back, never too much.
 #[derive(Debug, Clone, Copy)]
 pub struct BoundaryLoss<R: Real> {
     /// The share of it that leaves into the body.
     pub share_inside: R,
     /// 1/(π Σ n² (1 − Ē)) over both sides.
     scale: R,
+    /// What the losses of the tables are multiplied by.
+    roundness: R,
     /// The place of the indices in the tables, [0, 1].
     contrast: R,
     /// 1 where the body is the denser medium, else 0.
@@ -212,6 +228,7 @@ impl<R: Real> BoundaryLoss<R> {
         let m = ior.max(ior.recip());
         let contrast = (m - R::one()) / (m + R::one()) * R::lit(1.0 / MOST_CONTRAST);
         let d = &surface.distribution;
+        let roundness = roundness(d.alpha_x(), d.alpha_y());
         let root = d.alpha_x().min(d.alpha_y()).sqrt();
         let first = first_table(d.shape(), surface.masking);
         let from_rarer = R::table2(&MEANS[first], root, contrast);
@@ -221,17 +238,19 @@ impl<R: Real> BoundaryLoss<R> {
         let outside = denser_inside.lerp(from_denser, from_rarer) + tiny;
         Self {
             share_inside: inside / (inside + outside),
-            scale: R::lit(FRAC_1_PI) / (inside + outside),
+            scale: R::lit(FRAC_1_PI) / (roundness * (inside + outside)),
+            roundness,
             contrast,
             denser_inside,
         }
     }
 
     pub(crate) fn cast<S: Real>(&self, f: &impl Fn(R) -> S) -> BoundaryLoss<S> {
-        let [share_inside, scale, contrast, denser_inside] = cast(
+        let [share_inside, scale, roundness, contrast, denser_inside] = cast(
             [
                 self.share_inside,
                 self.scale,
+                self.roundness,
                 self.contrast,
                 self.denser_inside,
             ],
@@ -240,12 +259,13 @@ impl<R: Real> BoundaryLoss<R> {
         BoundaryLoss {
             share_inside,
             scale,
+            roundness,
             contrast,
             denser_inside,
         }
     }
 
-    /// 1 − E(μ) on the inner (`inside` = 1) or outer (0) side, read at the smaller slope scale.
+    /// What is given back of 1 − E(μ), on the inner (`inside` = 1) or outer (0) side.
     #[inline(always)]
     pub(crate) fn directional(&self, surface: &RoughSurface<R>, mu: R, inside: R) -> R {
         R::out_of_line(LookUp {
@@ -284,7 +304,7 @@ impl<R: Real> Work for LookUp<'_, R> {
             .lt(R::lit(0.5));
         let rarer = R::table3(&LOSSES[first], x, y, z);
         let denser = R::table3(&LOSSES[first + 1], x, y, z);
-        R::select(from_denser, denser, rarer)
+        R::select(from_denser, denser, rarer) * self.loss.roundness
     }
 }
 
@@ -324,6 +344,37 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Both axes, at the places where the quotient of the losses is least.
+    #[test]
+    fn an_anisotropic_surface_loses_more_than_it_is_given_back() {
+        let mut without = 0.0f64;
+        for (shape, alpha, eta, mu) in [
+            (Shape::Beckmann, 0.1, 1.05, 0.01),
+            (Shape::Beckmann, 0.8, 0.25, 0.1),
+            (Shape::Beckmann, 0.3, 4.0, 0.01),
+            (Shape::Ggx, 0.6, 1.0 / 1.2, 0.01),
+            (Shape::Ggx, 1.0, 1.0 / 1.5, 0.01),
+        ] {
+            for ratio in [0.97, 0.7, 0.3, 0.1] {
+                let loss = |x: f64, y: f64| {
+                    let d = Distribution::new(shape, alpha * x, alpha * y, 0.0);
+                    1.0 - directional_albedo(&d, Masking::SmithCorrelated, eta, mu)
+                };
+                let truth = loss(1.0, ratio).min(loss(ratio, 1.0));
+                let smoother = loss(ratio, ratio);
+                // The quadrature's own error is 1e-4.
+                let given = smoother * roundness(1.0, ratio);
+                assert!(
+                    given < truth + 1e-4,
+                    "{shape:?} {eta} {ratio}: {given} {truth}"
+                );
+                without = without.max(smoother - truth);
+            }
+        }
+        // Without the factor far more would be given back than was lost.
+        assert!(without > 0.05, "{without}");
     }
 
     #[test]

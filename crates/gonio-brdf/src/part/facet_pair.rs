@@ -19,7 +19,7 @@ pub(crate) struct FacetPair<R: Real> {
     pub n: [R; 2],
     /// The facet's normal, on the outer side.
     pub h: Vec3<R>,
-    /// 1/|n_i ωi + n_r ωr|².
+    /// 1/|n_i ωi + n_r ωr|², of a refracted pair.
     over_length2: R,
     /// ω·h of each.
     pub cos: [R; 2],
@@ -35,8 +35,13 @@ impl<R: Real> FacetPair<R> {
         let one = R::one();
         let below = [w[0].z.lt(R::zero()), w[1].z.lt(R::zero())];
         let n = [R::select(below[0], ior, one), R::select(below[1], ior, one)];
+        // Of a reflected pair the index is a common factor: products with it would be rounded, and of a small sum few digits be left.
+        let weight = [
+            R::select(below[0] & !below[1], ior, one),
+            R::select(below[1] & !below[0], ior, one),
+        ];
         // Symmetric in the directions to the last bit, which makes f reciprocal where their sum is small.
-        let sum = w[0] * n[0] + w[1] * n[1];
+        let sum = w[0] * weight[0] + w[1] * weight[1];
         let length2 = sum.length_squared();
         // Opposite and both grazing, on one side: any half vector is as good as another.
         let lost = length2.lt(R::lit(1e-30));
