@@ -1,5 +1,6 @@
 //! The words around exported code.
 
+use super::effect::option_in_effect;
 use super::{Export, Style};
 use crate::record::FunctionKind;
 use crate::{Brdf, Kind, ModelSpec, Value};
@@ -74,7 +75,7 @@ pub(super) fn header(export: &Export<'_>, style: &Style<'_>, constants: &str) ->
     text
 }
 
-/// The choices of a description and of its parts.
+/// The choices of a description and of its parts that have an effect.
 fn fixed(spec: &ModelSpec) -> Vec<String> {
     let Ok(info) = spec.info() else {
         return Vec::new();
@@ -82,7 +83,9 @@ fn fixed(spec: &ModelSpec) -> Vec<String> {
     let mut all = Vec::new();
     for p in info.parameters {
         match (p.kind, spec.value(p.name)) {
-            (Kind::Choice { .. }, Some(value)) => all.push(format!("{}={value}", p.name)),
+            (Kind::Choice { .. }, _) => {
+                all.extend(option_in_effect(spec, p).map(|word| format!("{}={word}", p.name)));
+            }
             (Kind::Models, Some(Value::Models(models))) => {
                 for part in &models {
                     let inner = fixed(part);

@@ -3,6 +3,7 @@
 //! The formulas are recorded from the source that is evaluated here, as in [`crate::record`], with the model's parameters as named
 //! constants that a reader may change, where that is possible without making the code much longer.
 
+mod effect;
 mod header;
 mod parameters;
 

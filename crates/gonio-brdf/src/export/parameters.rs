@@ -1,9 +1,9 @@
 //! Which of a model's parameters a reader of the exported code may change.
 
+use super::effect::{has_effect, probes};
 use super::header::{COLUMNS, wrapped};
 use crate::record::{FunctionKind, Named, recorded};
 use crate::{Brdf, BrdfError, Kind, Model, ModelInfo, ModelSpec, ParameterInfo, Value};
-use gonio_num::Vec3;
 use gonio_num::expr::{Expr, Parameter};
 
 /// A parameter may add this many operations to the code that draws a direction. More are those of a quadrature that its value goes
@@ -43,7 +43,7 @@ impl Candidate {
 #[derive(Debug, Default)]
 pub(super) struct Editable {
     chosen: Vec<Candidate>,
-    /// Those that can't, as they are written in a description.
+    /// Those that can't but have an effect, as they are written in a description.
     pub left_out: Vec<String>,
     /// Whether there are others, which are 0.
     pub switched_off: bool,
@@ -66,7 +66,7 @@ impl Editable {
             if with <= plain + MOST_ADDED {
                 small.push(candidate);
             } else {
-                found.left_out.push(candidate.label());
+                found.leave_out(spec, &candidate);
             }
         }
         // Together, and if that isn't the model, those that are, one by one.
@@ -75,13 +75,20 @@ impl Editable {
             found.chosen.clear();
             for candidate in small {
                 found.chosen.push(candidate);
-                if !found.keeps(model)? {
-                    let without = found.chosen.pop();
-                    found.left_out.extend(without.map(|c| c.label()));
+                if !found.keeps(model)?
+                    && let Some(without) = found.chosen.pop()
+                {
+                    found.leave_out(spec, &without);
                 }
             }
         }
         Ok(found)
+    }
+
+    fn leave_out(&mut self, spec: &ModelSpec, candidate: &Candidate) {
+        if has_effect(part(spec, &candidate.path), candidate.parameter()) {
+            self.left_out.push(candidate.label());
+        }
     }
 
     fn with(chosen: Vec<Candidate>) -> Self {
@@ -99,14 +106,7 @@ impl Editable {
         let sample = recorded(model, FunctionKind::Sample, "f", self)?;
         // What a parameter that is rounded once more may change.
         let same = |a: f32, b: f32| (a - b).abs() <= 1e-5 * b.abs().max(1e-3);
-        for k in 0..8u8 {
-            let x = |step: f64| (0.5 + f64::from(k) * step).fract() as f32;
-            let u = [0.819_172_5, 0.671_043_6, 0.549_700_5].map(x);
-            let direction = |a: f32, b: f32, side: f32| {
-                Vec3::new(a - 0.5, b - 0.5, side * (0.2 + 0.8 * a)).normalize()
-            };
-            let wi = direction(u[0], u[1], if k % 4 == 3 { -1.0 } else { 1.0 });
-            let wo = direction(u[2], u[0], 1.0);
+        for (wi, wo, u) in probes() {
             let pair = [wi.x, wi.y, wi.z, wo.x, wo.y, wo.z];
             let drawn = model.sample(wo, u);
             let mut expected = model.eval(wi, wo).to_vec();
@@ -166,6 +166,18 @@ impl Named for Editable {
             set(model, &c.path, c.parameter().name, value);
         }
     }
+}
+
+/// The part of a description that `path` leads to.
+fn part<'s>(spec: &'s ModelSpec, path: &[usize]) -> &'s ModelSpec {
+    let Some((k, rest)) = path.split_first() else {
+        return spec;
+    };
+    let inner = spec.values.values().find_map(|value| match value {
+        Value::Models(models) => models.get(*k),
+        _ => None,
+    });
+    part(inner.expect("invariant: the path was made from it"), rest)
 }
 
 /// Sets a parameter of the part of a model that `path` leads to.

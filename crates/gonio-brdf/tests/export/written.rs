@@ -27,3 +27,32 @@ fn wgsl_and_glsl_are_valid() {
         validate(&module, &text);
     }
 }
+
+/// The header names the choices that the code was written with, and only what has an effect.
+#[test]
+fn the_header_says_what_is_in_effect() {
+    let settled = |spec: &str| {
+        let spec = ModelSpec::parse(spec).unwrap();
+        let text = text(&Export::new(&spec).unwrap(), Language::Wgsl, "m");
+        let after = text.split("Settled when").nth(1).unwrap_or_default();
+        after.split("//\n").next().unwrap().to_owned()
+    };
+    // A metal's reflectance is a conductor's although `schlick` is the default, and `eta` has no effect.
+    let gold = settled("ggx:metal=gold");
+    assert!(
+        gold.contains("metal=gold") && gold.contains("fresnel=conductor"),
+        "{gold}"
+    );
+    assert!(
+        !gold.contains("schlick") && !gold.contains("eta="),
+        "{gold}"
+    );
+    assert!(settled("ggx").contains("fresnel=schlick"));
+    // On unless it is switched off.
+    assert!(settled("rough-dielectric").contains("interreflection=kulla-conty"));
+    // A part's choices stand with it.
+    let sum = settled("sum(lambertian, ggx:metal=gold)");
+    assert!(sum.contains("fresnel=conductor"), "{sum}");
+    // There is none to make.
+    assert_eq!(settled("lambertian"), "");
+}
