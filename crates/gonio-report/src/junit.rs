@@ -27,6 +27,24 @@ pub fn junit(document: &Document) -> String {
     xml
 }
 
+/// JUnit XML of a check that ended before there was a verdict, as when a program died: one suite with one case, which is an error,
+/// not a failure.
+pub fn junit_of_error(subject: &str, message: &str, command: &str, version: &str) -> String {
+    let subject = escaped(subject);
+    let class = subject.replace('.', "·");
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+         <testsuites name=\"gonio brdf check\" tests=\"1\" failures=\"0\" errors=\"1\" skipped=\"0\" time=\"0\">\n  \
+         <testsuite name=\"{subject}\" tests=\"1\" failures=\"0\" errors=\"1\" skipped=\"0\" time=\"0\">\n    \
+         <properties>\n      <property name=\"gonio\" value=\"{}\"/>\n      <property name=\"command\" value=\"{}\"/>\n    </properties>\n    \
+         <testcase classname=\"{class}\" name=\"check\" time=\"0\">\n      <error type=\"check\" message=\"{}\"/>\n    </testcase>\n  \
+         </testsuite>\n</testsuites>\n",
+        escaped(version),
+        escaped(command),
+        escaped(message),
+    )
+}
+
 fn tests(section: &Section) -> usize {
     section.report.verdicts.len()
 }

@@ -8,7 +8,7 @@ mod tests;
 mod text;
 
 pub use html::html;
-pub use junit::junit;
+pub use junit::{junit, junit_of_error};
 
 use gonio_verify::{Expectation, Report};
 

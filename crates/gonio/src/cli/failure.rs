@@ -61,6 +61,10 @@ impl Failure {
         self.message = format!("{what}: {}", self.message);
         self
     }
+    /// What is wrong, in one line.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
     /// The exit code: 1 a verification failed, 2 usage, 3 input, 4 interrupted.
     pub fn code(&self) -> u8 {
         self.code

@@ -122,11 +122,7 @@ fn models_of_the_registry_have_reports() {
 fn programs_that_fail_are_named() {
     let place = Place::new();
     let exec = |command: &str, more: &[&str], code, words: &[&str]| {
-        let arguments = [
-            &["brdf", "check", "--exec", command, "--junit", "a.xml"][..],
-            more,
-        ]
-        .concat();
+        let arguments = [&["brdf", "check", "--exec", command][..], more].concat();
         place.bad(&arguments, code, words)
     };
     exec("", &[], 2, &["the command line is empty"]);
@@ -157,6 +153,30 @@ fn programs_that_fail_are_named() {
             &["`hello`", "expected a line of JSON"],
         );
     }
+}
+
+/// A build server shows an error, not a failed property.
+#[cfg(unix)]
+#[test]
+fn a_program_that_dies_is_an_error_in_junit() {
+    let place = Place::new();
+    let said = place.gonio(&[
+        "brdf",
+        "check",
+        "--exec",
+        "sh -c 'exit 9'",
+        "--junit",
+        "a.xml",
+    ]);
+    assert_eq!(said.code, 3, "{said:?}");
+    let xml = String::from_utf8(place.read("a.xml")).unwrap();
+    let document = roxmltree::Document::parse(&xml).unwrap();
+    let all = document.root_element();
+    assert_eq!(all.attribute("errors"), Some("1"));
+    assert_eq!(all.attribute("failures"), Some("0"));
+    let error = all.descendants().find(|n| n.has_tag_name("error")).unwrap();
+    let message = error.attribute("message").unwrap();
+    assert!(message.contains("exit status 9"), "{xml}");
 }
 
 #[test]

@@ -122,16 +122,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     // Before any time is spent.
     arguments.files.writable()?;
-    let sections = match (&arguments.exec, &arguments.spec) {
-        (Some(command), _) => vec![exec::check(
-            command,
-            arguments.exec_timeout,
-            &arguments.options(),
-            arguments.files.shows_plots(),
-        )?],
-        (None, Some(spec)) => named(spec, arguments)?,
-        // The parser asks for one of both.
-        (None, None) => Vec::new(),
+    let sections = match checked_subjects(arguments) {
+        Ok(sections) => sections,
+        Err(failure) => {
+            let subject = arguments.exec.as_ref().or(arguments.spec.as_ref());
+            let subject = subject.map_or("", String::as_str);
+            // What ended the check is to be said, even if the file can't be written either.
+            let _ = arguments
+                .files
+                .write_error(subject, &failure, &again(arguments));
+            return Err(failure);
+        }
     };
     if arguments.exec.is_some() && !arguments.json {
         for section in &sections {
@@ -148,6 +149,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         print(&format!("{} reflection functions passed", reports.len()))?;
     }
     Ok(())
+}
+
+fn checked_subjects(arguments: &Arguments) -> Result<Vec<Section>, Failure> {
+    match (&arguments.exec, &arguments.spec) {
+        (Some(command), _) => Ok(vec![exec::check(
+            command,
+            arguments.exec_timeout,
+            &arguments.options(),
+            arguments.files.shows_plots(),
+        )?]),
+        (None, Some(spec)) => named(spec, arguments),
+        // The parser asks for one of both.
+        (None, None) => Ok(Vec::new()),
+    }
 }
 
 /// Checks models of the registry, and prints each report when it is there.

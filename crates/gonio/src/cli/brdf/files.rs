@@ -57,6 +57,24 @@ impl Files {
         }
         Ok(())
     }
+
+    /// Writes what a build server shows of a check that ended without a verdict: nothing where the command line was at fault. The page of
+    /// an earlier check is left as it is.
+    pub(super) fn write_error(
+        &self,
+        subject: &str,
+        why: &Failure,
+        command: &str,
+    ) -> Result<(), Failure> {
+        if let Some(file) = &self.junit
+            && why.code() != 2
+        {
+            let version = env!("CARGO_PKG_VERSION");
+            let xml = report::junit_of_error(subject, why.message(), command, version);
+            gonio_image::write_file(file, xml.as_bytes())?;
+        }
+        Ok(())
+    }
 }
 
 /// What a report says of a model of the registry, with plots if they are to be shown.
