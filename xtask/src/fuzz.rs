@@ -6,20 +6,18 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Flags that put the counters in.
 const INSTRUMENTATION: &str = "-C passes=sancov-module -C llvm-args=-sanitizer-coverage-level=4 \
     -C llvm-args=-sanitizer-coverage-inline-8bit-counters -C llvm-args=-sanitizer-coverage-pc-table \
     -C llvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing";
-/// Targets that run side by side: more than a small machine has cores, so that a minute for each is not a large part of all checks.
-const AT_ONCE: usize = 5;
 /// MiB that a target may use.
 const MEMORY_MB: u32 = 2048;
 /// Seconds that one input may take.
 const SLOWEST: u32 = 20;
 
-/// Builds every target and runs each for `seconds`; a crash, a time-out or too much memory is an error.
+/// Builds every target and runs each for `seconds`, all side by side, so that a minute for each is a minute of all checks; a crash, a
+/// time-out or too much memory is an error.
 pub fn run(seconds: u32) -> Result<(), String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz");
     let names = targets(&folder)?;
@@ -37,20 +35,16 @@ pub fn run(seconds: u32) -> Result<(), String> {
         Err(e) => return Err(format!("cargo build does not run: {e}")),
     }
     let programs = folder.join("target").join(machine).join("release");
-    let next = AtomicUsize::new(0);
     let failed = Mutex::new(Vec::new());
     std::thread::scope(|threads| {
-        for _ in 0..AT_ONCE {
-            threads.spawn(|| {
-                while let Some(name) = names.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    match one(&folder, &programs, name, seconds) {
-                        Ok(line) => println!("fuzz {name}: {line}"),
-                        Err(line) => {
-                            println!("fuzz {name}: FAILED: {line}");
-                            if let Ok(mut failed) = failed.lock() {
-                                failed.push(name.clone());
-                            }
-                        }
+        for name in &names {
+            let (folder, programs, failed) = (&folder, &programs, &failed);
+            threads.spawn(move || match one(folder, programs, name, seconds) {
+                Ok(line) => println!("fuzz {name}: {line}"),
+                Err(line) => {
+                    println!("fuzz {name}: FAILED: {line}");
+                    if let Ok(mut failed) = failed.lock() {
+                        failed.push(name.clone());
                     }
                 }
             });
