@@ -7,7 +7,7 @@ pub use input::{Channels, TextureInput};
 pub use shading::Shading;
 
 use crate::{SceneError, SurfacePoint, Texture};
-use gonio_brdf::{Brdf, Kind, Model, ModelSpec, ParameterSlot, Value};
+use gonio_brdf::{Brdf, BrdfError, Kind, Model, ModelSpec, ParameterSlot, Value};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::{SampleStream, SamplerKind};
 use std::borrow::Cow;
@@ -129,6 +129,11 @@ impl Material {
             albedo,
             albedo_binding: None,
         })
+    }
+
+    /// The first evaluation of a shader in it that didn't end: since then it reflects NaN. See [`Model::failure`].
+    pub fn failure(&self) -> Option<BrdfError> {
+        self.model.failure()
     }
 
     /// What a user should know of the measured files that the model was read from.

@@ -27,13 +27,13 @@ impl Summary<'_> {
     /// The warning of samples that could not enter the picture, with the place of the first.
     pub fn rejected(&self, scene: &Scene) -> Option<String> {
         let first = self.rejected_samples.first.as_ref()?;
-        let material = first
-            .material
-            .and_then(|m| scene.materials.get(m as usize))
-            .map_or("no surface", |m| m.name.as_str());
+        let material = first.material.and_then(|m| scene.materials.get(m as usize));
+        let why = material.and_then(|m| m.failure());
+        let why = why.map_or(String::new(), |e| format!(": {e}"));
+        let material = material.map_or("no surface", |m| m.name.as_str());
         Some(format!(
             "{} samples were negative or not finite and count as black; the first: pixel {}, {}, sample {}, material \
-             '{material}', radiance {:?}",
+             '{material}', radiance {:?}{why}",
             self.rejected_samples.count,
             first.pixel[0],
             first.pixel[1],

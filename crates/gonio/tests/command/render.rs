@@ -152,6 +152,28 @@ fn the_summary_as_json() {
     );
 }
 
+/// A shader that stops ending in the middle of a picture is named, with its loop.
+#[test]
+fn a_shader_that_does_not_end_is_named() {
+    let place = Place::new();
+    place.write(
+        "stuck.wgsl",
+        "fn eval(wi: vec3f, wo: vec3f) -> vec3f {\n  var x = wi;\n  while x.x > 0.2 && x.x < 0.22 { x.y += 1.0; }\n  return x;\n}",
+    );
+    let ball = BALL.replace("\"lambertian\"", "\"stuck.wgsl\"");
+    let scene = place.write(
+        "ball.toml",
+        &ball.replace("reflectance = 0.5", "step_limit = 1000"),
+    );
+    let said = place.good(&tiny(&[&scene, "-o", "a.png"]));
+    for words in [
+        "'grey'",
+        "did not end after 1000 steps, in the loop at line 3",
+    ] {
+        assert!(said.err.contains(words), "{words}: {said:?}");
+    }
+}
+
 #[test]
 fn quiet_says_nothing() {
     let place = Place::new();
