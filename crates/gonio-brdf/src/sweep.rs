@@ -6,49 +6,106 @@ use gonio_verify::{Axis, Effort, Point, Range, Setting, Settings, SweepReport, p
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The parameters of a description that are left to their defaults, with all that they may be. What the description gives stays as it
-/// is, and so do the models that a composite is made of, and files.
+/// A free parameter, of the description itself or of a model that it is made of.
+struct Place {
+    /// At each composite on the way, which of its models.
+    path: Vec<usize>,
+    /// The parameter's name there.
+    key: &'static str,
+    axis: Axis,
+}
+
+/// The parameters of a description that are left to their defaults, and of the models that it is made of, with all that they may be.
+/// What the description gives stays as it is, and so do files. A part's parameter is named after it: `lambertian.reflectance`, with
+/// a number if the part has a twin, as in `ggx2.roughness`.
 ///
 /// # Errors
 /// If there is no such model.
 pub fn space(spec: &ModelSpec) -> Result<Vec<Axis>, BrdfError> {
+    Ok(places(spec)?.into_iter().map(|p| p.axis).collect())
+}
+
+fn places(spec: &ModelSpec) -> Result<Vec<Place>, BrdfError> {
+    let mut all = Vec::new();
+    collect(spec, &[], "", &mut all)?;
+    Ok(all)
+}
+
+fn collect(
+    spec: &ModelSpec,
+    path: &[usize],
+    prefix: &str,
+    all: &mut Vec<Place>,
+) -> Result<(), BrdfError> {
     let free = |p: &&'static ParameterInfo| !spec.values.contains_key(p.name);
-    let axis = |p: &ParameterInfo| {
+    // A shader's own parameters are among them.
+    for p in spec.parameters()?.into_iter().filter(free) {
+        let numbers = |low, high, components| Range::Numbers {
+            low,
+            high,
+            components,
+        };
         let range = match p.kind {
-            Kind::Number { low, high, .. } => Range::Numbers {
-                low,
-                high,
-                components: 1,
-            },
-            Kind::Colour { low, high, .. } => Range::Numbers {
-                low,
-                high,
-                components: 3,
-            },
+            Kind::Number { low, high, .. } => numbers(low, high, 1),
+            Kind::Colour { low, high, .. } => numbers(low, high, 3),
             Kind::Choice { options, .. } => {
                 Range::Words(options.iter().map(|w| (*w).to_owned()).collect())
             }
-            Kind::Path | Kind::Name | Kind::Models => return None,
+            Kind::Path | Kind::Name | Kind::Models => continue,
         };
-        Some(Axis {
-            name: p.name.to_owned(),
-            range,
-            optional: p.default_value().is_none(),
-        })
+        all.push(Place {
+            path: path.to_vec(),
+            key: p.name,
+            axis: Axis {
+                name: format!("{prefix}{}", p.name),
+                range,
+                optional: p.default_value().is_none(),
+            },
+        });
+    }
+    for models in spec.values.values().filter_map(parts) {
+        for (k, part) in models.iter().enumerate() {
+            let twins = models.iter().filter(|m| m.name == part.name).count();
+            let number = if twins > 1 {
+                (k + 1).to_string()
+            } else {
+                String::new()
+            };
+            let inner = [path, &[k]].concat();
+            collect(
+                part,
+                &inner,
+                &format!("{prefix}{}{number}.", part.name),
+                all,
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn parts(value: &Value) -> Option<&Vec<ModelSpec>> {
+    match value {
+        Value::Models(models) => Some(models),
+        _ => None,
+    }
+}
+
+/// The model that `path` leads to.
+fn part_mut<'s>(spec: &'s mut ModelSpec, path: &[usize]) -> &'s mut ModelSpec {
+    let Some((k, rest)) = path.split_first() else {
+        return spec;
     };
-    // A shader's own parameters are among them.
-    let parameters = spec.parameters()?;
-    Ok(parameters
-        .into_iter()
-        .filter(free)
-        .filter_map(axis)
-        .collect())
+    let inner = spec.values.values_mut().find_map(|value| match value {
+        Value::Models(models) => models.get_mut(*k),
+        _ => None,
+    });
+    part_mut(inner.expect("invariant: the path was made from it"), rest)
 }
 
 /// The description with the values of `point`.
-fn at(spec: &ModelSpec, axes: &[Axis], point: &Point) -> Result<ModelSpec, BrdfError> {
+fn at(spec: &ModelSpec, places: &[Place], point: &Point) -> Result<ModelSpec, BrdfError> {
     let mut spec = spec.clone();
-    for (axis, setting) in axes.iter().zip(point) {
+    for (place, setting) in places.iter().zip(point) {
         let value = match setting {
             None => continue,
             Some(Setting::Word(word)) => Value::Choice(word.clone()),
@@ -57,7 +114,7 @@ fn at(spec: &ModelSpec, axes: &[Axis], point: &Point) -> Result<ModelSpec, BrdfE
                 _ => Value::Number(n[0]),
             },
         };
-        spec.set(&axis.name, value)?;
+        part_mut(&mut spec, &place.path).set(place.key, value)?;
     }
     Ok(spec)
 }
@@ -75,7 +132,8 @@ pub fn sweep(
     count: usize,
     options: &CheckOptions,
 ) -> Result<SweepReport, BrdfError> {
-    let axes = space(spec)?;
+    let places = places(spec)?;
+    let axes: Vec<Axis> = places.iter().map(|p| p.axis.clone()).collect();
     // What is wrong with the description itself is to be said, and not to be left out point by point.
     if spec
         .parameters()?
@@ -96,7 +154,7 @@ pub fn sweep(
     };
     let done = AtomicU64::new(0);
     let checked = |point: &Point| {
-        let result = at(spec, &axes, point).and_then(|spec| {
+        let result = at(spec, &places, point).and_then(|spec| {
             let look = |settings| {
                 let options = CheckOptions {
                     effort: Effort::Quick,
@@ -119,7 +177,7 @@ pub fn sweep(
         result
     };
     let reports: Vec<_> = all.par_iter().map(checked).collect();
-    let mut found = SweepReport::new(spec.to_string(), axes.clone());
+    let mut found = SweepReport::new(spec.to_string(), axes);
     let mut last = None;
     for result in reports {
         match result {

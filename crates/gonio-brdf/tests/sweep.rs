@@ -23,7 +23,36 @@ fn the_space_is_what_the_description_leaves_open() {
         panic!("a metal is a word")
     };
     assert!(metals.iter().any(|m| m == "gold"));
-    assert!(space(&spec("sum(lambertian, mirror)")).unwrap().is_empty());
+}
+
+#[test]
+fn parts_of_composites_are_swept_with_them() {
+    let names = |text: &str| -> Vec<String> {
+        let axes = space(&spec(text)).unwrap();
+        axes.into_iter().map(|a| a.name).collect()
+    };
+    assert_eq!(
+        names("sum(lambertian, eon:0.3)"),
+        ["lambertian.reflectance", "eon.roughness", "eon.albedo"]
+    );
+    assert_eq!(
+        names("sum(lambertian, lambertian:0.2)"),
+        ["lambertian1.reflectance"]
+    );
+    assert!(names("coat(scaled(0.5, ggx))").contains(&"scaled.torrance-sparrow.roughness".into()));
+
+    // The control: each part conserves energy by itself, both together don't.
+    let text = "sum(lambertian, phong:specular=0.5,diffuse=0)";
+    let found = sweep(&spec(text), 12, &CheckOptions::new(Effort::Quick)).unwrap();
+    let energy = found.worst(Property::EnergyConservation).unwrap();
+    assert!(energy.verdict.figure > 1.3, "{energy:?}");
+    // The worst point is one of a part.
+    assert!(
+        energy.at.contains("lambertian:reflectance=1"),
+        "{}",
+        energy.at
+    );
+    assert!(spec(&energy.at).build::<f64, 3>().is_ok());
 }
 
 #[test]
