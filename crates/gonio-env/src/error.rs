@@ -1,6 +1,6 @@
 //! [`EnvError`], what can go wrong with an environment.
 
-use crate::Layout;
+use crate::{Convention, Layout};
 use std::path::PathBuf;
 
 /// Why an environment could not be made.
@@ -73,6 +73,14 @@ pub enum EnvError {
         /// The word.
         found: String,
     },
+    /// A word that names no convention.
+    #[error("unknown convention \"{found}\"")]
+    UnknownConvention {
+        /// The word.
+        found: String,
+        /// The convention that was probably meant.
+        suggestion: Option<&'static str>,
+    },
     /// A number out of range.
     #[error("{name} = {found}, expected {expected}")]
     Parameter {
@@ -123,7 +131,7 @@ impl EnvError {
             }
             EnvError::AmbiguousLayout { .. } => Some(
                 "a lat-long panorama is twice as wide as high; say what this is: `--env-layout lat-long`, `angular` or \
-                 `mirror-ball` (cube maps are not read)"
+                 `mirror-ball`, `octahedral`, `equal-area-octahedral`, `dual-paraboloid`, or a cube: 4:3, 3:4, 6:1 or 1:6"
                     .to_owned(),
             ),
             EnvError::UnknownLayout { found } => {
@@ -131,6 +139,13 @@ impl EnvError {
                 Some(match suggest(found, &names) {
                     Some(word) => format!("did you mean \"{word}\"? Layouts are {}", names.join(", ")),
                     None => format!("layouts are {}", names.join(", ")),
+                })
+            }
+            EnvError::UnknownConvention { suggestion, .. } => {
+                let names = Convention::ALL.map(Convention::name).join(", ");
+                Some(match suggestion {
+                    Some(word) => format!("did you mean \"{word}\"? Conventions are {names}"),
+                    None => format!("conventions are {names}"),
                 })
             }
             EnvError::Parameter { .. } => None,

@@ -45,7 +45,7 @@ pub use error::EnvError;
 pub use info::{EnvInfo, Peak};
 pub use irradiance::Irradiance;
 pub use load::LoadOptions;
-pub use projection::Layout;
+pub use projection::{Convention, Layout, View};
 
 /// Luminance of linear RGB with Rec.709 primaries, relative to white (1, 1, 1).
 pub(crate) fn luminance(rgb: [f32; 3]) -> f64 {

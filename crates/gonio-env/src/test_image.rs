@@ -5,7 +5,7 @@
 //! one looks along it: for the faces above and below, when one came from looking forward (−z). Every channel is 0 or 1,
 //! so that any picture format stores the image exactly.
 
-use crate::Layout;
+use crate::{Convention, Layout, View};
 use gonio_image::Image;
 use gonio_num::Vec3;
 
@@ -108,17 +108,23 @@ pub fn radiance(d: Vec3<f64>) -> [f32; 3] {
     if dot { [0.0; 3] } else { face.colour }
 }
 
-/// The test environment as a picture of `size` rows: 2 `size` × `size` for lat-long, `size` × `size` for the disc layouts,
-/// black outside the disc. Labels are legible from about 128 rows.
+/// The test environment as a picture: `size` rows, or `size` rows of each face of a cube; black where the layout shows
+/// nothing. Labels are legible from about 128 rows.
 pub fn six_axes(layout: Layout, size: usize) -> Image {
-    let width = if layout.is_disc() { size } else { 2 * size };
-    Image::from_fn(width, size, |x, y| {
+    six_axes_of(&View::new(layout, Convention::Gonio), size)
+}
+
+/// [`six_axes`] as a convention turns it.
+pub fn six_axes_of(view: &View, size: usize) -> Image {
+    let layout = view.layout();
+    let [width, height] = layout.shape().map(|n| n * size);
+    Image::from_fn(width, height, |x, y| {
         let uv = [
             (x as f64 + 0.5) / width as f64,
-            (y as f64 + 0.5) / size as f64,
+            (y as f64 + 0.5) / height as f64,
         ];
         if layout.contains(uv) {
-            radiance(layout.direction(uv))
+            radiance(view.direction(uv))
         } else {
             [0.0; 3]
         }
