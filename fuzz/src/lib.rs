@@ -2,6 +2,7 @@
 
 use gonio_brdf::BrdfError;
 use gonio_brdf::measured::{Input, Measurement};
+use gonio_image::{CubeMap, Image, ImageError, Limits};
 use gonio_num::Vec3;
 use std::path::Path;
 
@@ -21,5 +22,29 @@ pub fn read(parse: impl Fn(&Input<'_>) -> Result<Measurement, BrdfError>, bytes:
         }
         Err(BrdfError::Format { path, .. }) => assert_eq!(path, Path::new("fuzz.file")),
         Err(other) => panic!("not an error of the format: {other}"),
+    }
+}
+
+/// Reads bytes as a cube map and as a picture. What is read has the size that it says; an error names the file.
+pub fn read_texture(bytes: &[u8]) {
+    let limits = Limits {
+        max_pixels: 1 << 20,
+        max_bytes: 1 << 24,
+    };
+    let named = |error: &ImageError| assert!(error.to_string().starts_with("<memory>"), "{error}");
+    match CubeMap::decode(bytes, &limits) {
+        Ok(cube) => {
+            for (level, faces) in cube.levels.iter().enumerate() {
+                for face in faces {
+                    assert_eq!(face.width, (cube.size >> level).max(1));
+                    assert_eq!(face.pixels.len(), face.width * face.height);
+                }
+            }
+        }
+        Err(error) => named(&error),
+    }
+    match Image::decode(bytes, &limits) {
+        Ok(image) => assert_eq!(image.pixels.len(), image.width * image.height),
+        Err(error) => named(&error),
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::lookup::Map;
 use crate::sphere_table::{SphereTable, UNIFORM_DENSITY, uniform_direction};
-use crate::{EnvError, Layout, luminance};
+use crate::texels::Remedy;
+use crate::{Convention, EnvError, Layout, Panorama, luminance};
 use gonio_image::Image;
 use gonio_num::{Real, Vec3};
 use std::sync::Arc;
@@ -68,13 +69,13 @@ impl Environment {
 
     /// The environment that `image` shows, its pixels being radiance \[W m⁻² sr⁻¹].
     ///
-    /// Any size will do for `LatLong`, down to 1 × 1; the disc layouts take square pictures. What stands outside a disc
+    /// Any size will do for `LatLong`, down to 1 × 1; the other layouts want their proportions. What stands outside a disc
     /// is ignored.
     ///
     /// # Errors
     /// [`EnvError::Shape`], and [`EnvError::Texel`] for a texel that is NaN, infinite or negative.
     pub fn from_image(image: Image, layout: Layout) -> Result<Self, EnvError> {
-        Ok(Self::from_map(Map::new(image, layout, None, false)?))
+        Self::from_panorama(Panorama::new(image, layout, Convention::Gonio)?)
     }
 
     /// As [`Environment::from_image`], but replaces unsound texels instead of refusing them: NaN, −∞ and negative
@@ -83,7 +84,8 @@ impl Environment {
     /// # Errors
     /// [`EnvError::Shape`].
     pub fn from_image_sanitized(image: Image, layout: Layout) -> Result<Self, EnvError> {
-        Ok(Self::from_map(Map::new(image, layout, None, true)?))
+        let panorama = Panorama::new(image, layout, Convention::Gonio)?;
+        Self::of_panorama(panorama, Remedy::Clamp)
     }
 
     pub(crate) fn from_map(map: Map) -> Self {

@@ -51,6 +51,18 @@ pub enum EnvError {
         /// What was expected.
         expected: &'static str,
     },
+    /// A file that should be a face of a cube is no square of the others' size.
+    #[error("{}: {width} × {height} pixels, expected a face of {expected} × {expected}", file.display())]
+    Faces {
+        /// The file.
+        file: PathBuf,
+        /// Columns.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// The side that was expected.
+        expected: usize,
+    },
     /// The layout can't be told from the picture.
     #[error(
         "{}: {width} × {height} pixels{}: the layout can't be told from the picture",
@@ -118,14 +130,15 @@ impl EnvError {
             EnvError::Image(_) => None,
             EnvError::NotFound { suggestion, .. } => Some(match suggestion {
                 Some(word) => format!("did you mean \"{word}\"?"),
-                None => "an environment is \"uniform:1\", \"uniform:r/g/b\", or a picture (.hdr, .exr, .png, .jpg)".to_owned(),
+                None => "an environment is \"uniform:1\", \"uniform:r/g/b\", or a picture (.hdr, .exr, .png, .jpg, .ktx2, .dds)".to_owned(),
             }),
             EnvError::Texel { .. } => Some(
-                "load it with sanitize on (`--env-sanitize`): NaN and negative become 0, infinite the largest finite \
-                 value, and they are counted"
+                "replace them: `--env-sanitize` makes NaN and negative 0, infinite the largest finite value; `--repair` takes \
+                 their neighbours"
                     .to_owned(),
             ),
             EnvError::Shape { .. } => None,
+            EnvError::Faces { .. } => Some("the six faces of a cube are squares of one size".to_owned()),
             EnvError::AmbiguousLayout { disc: true, .. } => {
                 Some("say which it is: `--env-layout angular` or `--env-layout mirror-ball`".to_owned())
             }

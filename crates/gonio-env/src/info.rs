@@ -1,7 +1,9 @@
 //! [`EnvInfo`], what an environment is made of.
 
 use crate::environment::Source;
-use crate::{Environment, Layout, luminance};
+use crate::projection::View;
+use crate::{Convention, Environment, Layout, Panorama, luminance};
+use gonio_image::{TexelFormat, f16};
 use gonio_num::{Real, Vec3};
 use serde::Serialize;
 use std::fmt;
@@ -14,6 +16,8 @@ pub struct EnvInfo {
     pub file: Option<String>,
     /// How the picture is laid out; nothing for a uniform environment.
     pub layout: Option<Layout>,
+    /// Whose turn of the layout; nothing for a uniform environment.
+    pub convention: Option<Convention>,
     /// Columns of the picture; 0 for a uniform environment.
     pub width: usize,
     /// Rows of the picture; 0 for a uniform environment.
@@ -36,8 +40,9 @@ pub struct EnvInfo {
     pub negative_replaced: u64,
     /// Texels whose largest channel equals the picture's largest value exactly.
     pub texels_at_maximum: u64,
-    /// Whether the brightest light looks clipped: four or more texels at exactly the same maximum, in less than a
-    /// twentieth of the sphere, at four times the mean or more. Irradiance is then probably too small.
+    /// Whether the brightest light looks clipped: four or more texels at exactly the same maximum, or one at the largest
+    /// half float (65,504) or RGB9E5 (65,408), in less than a twentieth of the sphere, at four times the mean or more.
+    /// Irradiance is then probably too small.
     pub looks_clipped: bool,
 }
 
@@ -67,14 +72,87 @@ const AXES: [(&str, Vec3<f64>); 6] = [
 ];
 
 /// What a walk over the texels finds.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Survey {
     smallest: f64,
     largest: f64,
+    /// The texel of the largest luminance, and its value.
+    peak: [usize; 2],
+    peak_radiance: [f32; 3],
     at_maximum: u64,
+    maximum: f32,
     solid_angle: f64,
     at_maximum_solid_angle: f64,
     black_solid_angle: f64,
+}
+
+/// A picture that was resampled to be light, as it was.
+#[derive(Debug)]
+pub(crate) struct Origin {
+    view: View,
+    width: usize,
+    height: usize,
+    survey: Survey,
+}
+
+impl Origin {
+    /// Surveys the picture.
+    pub fn of(panorama: &Panorama) -> Self {
+        let image = panorama.image();
+        Self {
+            view: *panorama.view(),
+            width: image.width,
+            height: image.height,
+            survey: survey(panorama.view(), image.width, image.height, &image.pixels),
+        }
+    }
+}
+
+fn survey(view: &View, width: usize, height: usize, texels: &[[f32; 3]]) -> Survey {
+    let mut survey = Survey {
+        smallest: f64::INFINITY,
+        largest: -1.0,
+        ..Survey::default()
+    };
+    let layout = view.layout();
+    for (i, texel) in texels.iter().enumerate() {
+        let (x, y) = (i % width, i / width);
+        let uv = centre(x, y, width, height);
+        if !layout.contains(uv) {
+            continue;
+        }
+        let solid_angle = layout.jacobian(uv);
+        let l = luminance(*texel);
+        survey.solid_angle += solid_angle;
+        if l > survey.largest {
+            survey.largest = l;
+            survey.peak = [x, y];
+            survey.peak_radiance = *texel;
+        }
+        if l > 0.0 {
+            survey.smallest = survey.smallest.min(l);
+        } else {
+            survey.black_solid_angle += solid_angle;
+        }
+        let high = texel.iter().copied().fold(0.0, f32::max);
+        if high > survey.maximum {
+            survey.maximum = high;
+            survey.at_maximum = 0;
+            survey.at_maximum_solid_angle = 0.0;
+        }
+        if high >= survey.maximum {
+            survey.at_maximum += 1;
+            survey.at_maximum_solid_angle += solid_angle;
+        }
+    }
+    survey
+}
+
+fn centre(x: usize, y: usize, width: usize, height: usize) -> [f64; 2] {
+    [
+        (x as f64 + 0.5) / width as f64,
+        (y as f64 + 0.5) / height as f64,
+    ]
 }
 
 impl Environment {
@@ -93,6 +171,7 @@ impl Environment {
         let mut info = EnvInfo {
             file: None,
             layout: None,
+            convention: None,
             width: 0,
             height: 0,
             yaw_deg: self.yaw_deg,
@@ -116,17 +195,32 @@ impl Environment {
             return info;
         };
         let map = &picture.map;
-        let (peak, x, y) = map.peak();
-        let survey = self.survey();
-        let local = map.layout.direction(map.centre(x, y));
-        let d = self.to_world_f64(local);
+        let (view, width, height) = match &map.origin {
+            Some(origin) => (origin.view, origin.width, origin.height),
+            None => (
+                View::new(map.layout, Convention::Gonio),
+                map.width,
+                map.height,
+            ),
+        };
+        let own;
+        let survey = match &map.origin {
+            Some(origin) => &origin.survey,
+            None => {
+                own = survey(&view, width, height, &map.texels);
+                &own
+            }
+        };
+        let [x, y] = survey.peak;
+        let d = self.to_world_f64(view.direction(centre(x, y, width, height)));
         let azimuth = Real::atan2(d.x, -d.z).to_degrees();
         info.file = map.file.as_ref().map(|f| f.display().to_string());
-        info.layout = Some(map.layout);
-        info.width = map.width;
-        info.height = map.height;
+        info.layout = Some(view.layout());
+        info.convention = Some(view.convention());
+        info.width = width;
+        info.height = height;
         info.peak = Peak {
-            radiance: times_scale(map.texels[y * map.width + x]),
+            radiance: times_scale(survey.peak_radiance),
             texel: [x, y],
             direction: d.to_array(),
             theta_deg: Real::atan2((d.x * d.x + d.z * d.z).sqrt(), d.y).to_degrees(),
@@ -138,51 +232,11 @@ impl Environment {
         info.negative_replaced = map.defects.negative;
         info.texels_at_maximum = survey.at_maximum;
         let mean = luminance(mean_radiance.map(|l| l as f32));
-        info.looks_clipped = survey.at_maximum >= 4
+        let formats = [f16::MAX.to_f32(), TexelFormat::Rgb9e5.largest()];
+        info.looks_clipped = (survey.at_maximum >= 4 || formats.contains(&survey.maximum))
             && survey.at_maximum_solid_angle < 0.05 * survey.solid_angle
-            && peak * luminance(self.scale) >= 4.0 * mean;
+            && survey.largest * luminance(self.scale) >= 4.0 * mean;
         info
-    }
-
-    fn survey(&self) -> Survey {
-        let mut survey = Survey {
-            smallest: f64::INFINITY,
-            ..Survey::default()
-        };
-        let Source::Picture(picture) = &self.source else {
-            return survey;
-        };
-        let map = &picture.map;
-        let highest = |t: [f32; 3]| t.into_iter().fold(0.0, f32::max);
-        let mut maximum = 0.0;
-        for y in 0..map.height {
-            for x in 0..map.width {
-                if !map.in_domain(x, y) {
-                    continue;
-                }
-                let texel = map.texels[y * map.width + x];
-                let solid_angle = map.layout.jacobian(map.centre(x, y));
-                let l = luminance(texel);
-                survey.solid_angle += solid_angle;
-                if l > 0.0 {
-                    survey.smallest = survey.smallest.min(l);
-                    survey.largest = survey.largest.max(l);
-                } else {
-                    survey.black_solid_angle += solid_angle;
-                }
-                let high = highest(texel);
-                if high > maximum {
-                    maximum = high;
-                    survey.at_maximum = 0;
-                    survey.at_maximum_solid_angle = 0.0;
-                }
-                if high >= maximum {
-                    survey.at_maximum += 1;
-                    survey.at_maximum_solid_angle += solid_angle;
-                }
-            }
-        }
-        survey
     }
 }
 
@@ -202,8 +256,13 @@ impl fmt::Display for EnvInfo {
         match self.layout {
             Some(layout) => writeln!(
                 f,
-                "layout           {layout}, {} × {}",
-                self.width, self.height
+                "layout           {layout}, {} × {}{}",
+                self.width,
+                self.height,
+                match self.convention {
+                    Some(c) if c != Convention::Gonio => format!(", as {c} turns it"),
+                    _ => String::new(),
+                }
             )?,
             None => writeln!(f, "layout           uniform")?,
         }
@@ -255,7 +314,7 @@ impl fmt::Display for EnvInfo {
                 "at the maximum   {} texel(s){}",
                 self.texels_at_maximum,
                 if self.looks_clipped {
-                    ": the brightest light looks clipped"
+                    ": the brightest light looks clipped (it has one value, four times the mean or more)"
                 } else {
                     ""
                 }

@@ -36,16 +36,21 @@ mod info;
 mod irradiance;
 mod load;
 mod lookup;
+mod panorama;
 pub mod projection;
+mod resample;
 mod sphere_table;
 pub mod test_image;
+mod texels;
 
 pub use environment::{EnvSample, Environment};
 pub use error::EnvError;
 pub use info::{EnvInfo, Peak};
 pub use irradiance::Irradiance;
 pub use load::LoadOptions;
+pub use panorama::{Conversion, Kept, Panorama};
 pub use projection::{Convention, Layout, View};
+pub use resample::{Filter, NO_ROTATION, Rotation, SIX_AXES, rotation_deg};
 
 /// Luminance of linear RGB with Rec.709 primaries, relative to white (1, 1, 1).
 pub(crate) fn luminance(rgb: [f32; 3]) -> f64 {

@@ -1,10 +1,12 @@
 //! Reading environments from files and from the words of a command line.
 
 use crate::error::suggest;
+use crate::info::Origin;
 use crate::lookup::Map;
-use crate::projection::disc_from_uv;
-use crate::{EnvError, Environment, Layout, luminance};
-use gonio_image::{Image, Limits};
+use crate::panorama::{self, Panorama};
+use crate::texels::Remedy;
+use crate::{Convention, Conversion, EnvError, Environment, Layout};
+use gonio_image::Limits;
 use std::path::Path;
 
 /// How a picture is read.
@@ -15,19 +17,23 @@ pub struct LoadOptions {
     /// Replace and count texels that are NaN, infinite or negative instead of refusing them: NaN, −∞ and negative values
     /// become 0, +∞ the largest finite value of the picture.
     pub sanitize: bool,
+    /// Replace and count such texels by the mean of their sound neighbours; goes before `sanitize`.
+    pub repair: bool,
+    /// Whose turn of the layout the picture has; [`Panorama::load`] says what it is otherwise.
+    pub convention: Option<Convention>,
     /// How large the picture may be.
     pub limits: Limits,
 }
 
 impl Environment {
-    /// Reads a picture (EXR, Radiance HDR, PNG, JPEG; PNG and JPEG are decoded from sRGB).
+    /// Reads an environment in any layout, as [`Panorama::load`] does: a picture (PNG and JPEG are decoded from sRGB), a
+    /// cube map, or six faces.
     ///
-    /// Without `layout` a picture twice as wide as high is lat-long; any other is an error that asks for the layout,
-    /// since an angular map and a mirrored ball look alike.
+    /// Without `layout` it is found by content and shape; a square picture is an error that asks for the layout, since an
+    /// angular map and a mirrored ball look alike.
     ///
     /// # Errors
-    /// [`EnvError::NotFound`], [`EnvError::Image`], [`EnvError::AmbiguousLayout`], [`EnvError::Shape`],
-    /// [`EnvError::Texel`].
+    /// As [`Panorama::load`].
     pub fn load(path: impl AsRef<Path>, layout: Option<Layout>) -> Result<Self, EnvError> {
         Self::load_with(
             path,
@@ -43,14 +49,7 @@ impl Environment {
     /// # Errors
     /// As [`Environment::load`]; no [`EnvError::Texel`] if `sanitize`.
     pub fn load_with(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Self, EnvError> {
-        let path = path.as_ref();
-        if !path.exists() {
-            return Err(EnvError::NotFound {
-                file: path.to_owned(),
-                suggestion: None,
-            });
-        }
-        Self::of_image(Image::read_within(path, &options.limits)?, path, options)
+        Self::of_panorama(panorama::read(path.as_ref(), options)?, options.remedy())
     }
 
     /// As [`Environment::load_with`], from the bytes of a picture; `file` names it in errors.
@@ -58,20 +57,51 @@ impl Environment {
     /// # Errors
     /// As [`Environment::load_with`], without [`EnvError::NotFound`].
     pub fn decode(bytes: &[u8], file: &Path, options: &LoadOptions) -> Result<Self, EnvError> {
-        Self::of_image(Image::decode(bytes, &options.limits)?, file, options)
+        Self::of_panorama(panorama::of_bytes(bytes, file, options)?, options.remedy())
     }
 
-    fn of_image(image: Image, path: &Path, options: &LoadOptions) -> Result<Self, EnvError> {
-        let layout = match options.layout {
-            Some(layout) => layout,
-            None => detect(&image, path)?,
+    /// The light that a panorama shows.
+    ///
+    /// A lat-long panorama, an angular map and a mirrored ball are looked up as they are. Any other layout, or convention, is
+    /// resampled once to a lat-long panorama whose rows are two for each row of a cube's face, or one for each of another
+    /// picture: finer than the picture everywhere, so that what is lost is one interpolation. Irradiance stays to 1e-3.
+    ///
+    /// # Errors
+    /// [`EnvError::Shape`], [`EnvError::Texel`].
+    pub fn from_panorama(panorama: Panorama) -> Result<Self, EnvError> {
+        Self::of_panorama(panorama, Remedy::Refuse)
+    }
+
+    pub(crate) fn of_panorama(mut panorama: Panorama, remedy: Remedy) -> Result<Self, EnvError> {
+        panorama.check_texels(remedy)?;
+        let defects = panorama.defects;
+        let file = panorama.file().map(Path::to_owned);
+        let native = matches!(
+            panorama.layout(),
+            Layout::LatLong | Layout::Angular | Layout::MirrorBall
+        ) && panorama.view().is_own();
+        let (origin, panorama) = if native {
+            (None, panorama)
+        } else {
+            let origin = Origin::of(&panorama);
+            let rows = panorama.image().height / panorama.layout().shape()[1];
+            let size = match panorama.layout() {
+                layout if layout.arrangement().is_some() => 2 * rows,
+                Layout::DualParaboloid => 2 * rows,
+                _ => rows,
+            };
+            let same = panorama.layout() == Layout::LatLong && panorama.image().width == 2 * rows;
+            let to = Conversion {
+                size: Some(if same { rows } else { size }),
+                ..Conversion::to(Layout::LatLong)
+            };
+            (Some(origin), panorama.resampled(&to))
         };
-        Ok(Self::from_map(Map::new(
-            image,
-            layout,
-            Some(path),
-            options.sanitize,
-        )?))
+        let layout = panorama.layout();
+        let mut map = Map::new(panorama.into_image(), layout, file.as_deref(), false)?;
+        map.defects = defects;
+        map.origin = origin;
+        Ok(Self::from_map(map))
     }
 
     /// Reads what stands after `--env`: `uniform:1`, `uniform:r/g/b` (radiance in W m⁻² sr⁻¹), or a file's name.
@@ -116,37 +146,4 @@ fn parse_radiance(text: &str) -> Result<[f32; 3], EnvError> {
         [r, g, b] => Ok([r, g, b]),
         _ => Err(error()),
     }
-}
-
-fn detect(image: &Image, path: &Path) -> Result<Layout, EnvError> {
-    let (width, height) = (image.width, image.height);
-    if width == 2 * height {
-        return Ok(Layout::LatLong);
-    }
-    Err(EnvError::AmbiguousLayout {
-        file: Some(path.to_owned()),
-        width,
-        height,
-        disc: width == height && is_black_outside_the_disc(image),
-    })
-}
-
-/// Whether what stands clear of the inscribed disc is darker than a thousandth of the mean.
-fn is_black_outside_the_disc(image: &Image) -> bool {
-    let n = image.width;
-    let mean = image.pixels.iter().map(|p| luminance(*p)).sum::<f64>() / image.pixels.len() as f64;
-    // A rim drawn with antialiasing may reach two texels out.
-    let clear = 1.0 + 4.0 / n as f64;
-    let mut any = false;
-    for (k, pixel) in image.pixels.iter().enumerate() {
-        let at = |i: usize| (i as f64 + 0.5) / n as f64;
-        let [x, y] = disc_from_uv([at(k % n), at(k / n)]);
-        if x * x + y * y > clear * clear {
-            any = true;
-            if luminance(*pixel) > 1e-3 * mean {
-                return false;
-            }
-        }
-    }
-    any
 }

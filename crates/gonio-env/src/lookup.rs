@@ -1,19 +1,12 @@
 //! [`Map`], a checked picture of radiance and its bilinear interpolation.
 
+use crate::info::Origin;
 use crate::projection::disc_from_uv;
+use crate::texels::{self, Defects, Remedy};
 use crate::{EnvError, Layout, luminance};
 use gonio_image::Image;
 use gonio_num::Vec3;
 use std::path::{Path, PathBuf};
-
-/// What was wrong with a picture's texels and has been replaced.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) struct Defects {
-    /// Texels with a NaN or an infinite channel.
-    pub non_finite: u64,
-    /// Other texels with a negative channel.
-    pub negative: u64,
-}
 
 /// A picture of radiance: at least one texel, every one finite and ≥ 0.
 #[derive(Debug)]
@@ -25,6 +18,8 @@ pub(crate) struct Map {
     pub texels: Vec<[f32; 3]>,
     pub file: Option<PathBuf>,
     pub defects: Defects,
+    /// The picture that this one was resampled from, if it was.
+    pub origin: Option<Origin>,
 }
 
 /// The four texels around a point, and the weights of the right and of the lower pair.
@@ -115,6 +110,7 @@ impl Map {
             texels: std::mem::take(&mut image.pixels),
             file: file.map(Path::to_owned),
             defects: Defects::default(),
+            origin: None,
         };
         map.check(sanitize)?;
         if layout.is_disc() {
@@ -137,56 +133,21 @@ impl Map {
     }
 
     fn check(&mut self, sanitize: bool) -> Result<(), EnvError> {
-        let sound = |c: f32| c.is_finite() && c >= 0.0;
-        let mut first = None;
-        let mut defects = Defects::default();
-        let mut largest = 0.0_f32;
-        for y in 0..self.height {
-            for x in 0..self.width {
-                let texel = self.texels[y * self.width + x];
-                if texel.into_iter().all(sound) {
-                    largest = texel.into_iter().fold(largest, f32::max);
-                    continue;
-                }
-                if !self.in_domain(x, y) {
-                    continue;
-                }
-                largest = texel
-                    .into_iter()
-                    .filter(|c| c.is_finite())
-                    .fold(largest, f32::max);
-                if texel.into_iter().all(f32::is_finite) {
-                    defects.negative += 1;
-                } else {
-                    defects.non_finite += 1;
-                }
-                first = first.or(Some((x, y, texel)));
-            }
-        }
-        let Some((x, y, texel)) = first else {
-            return Ok(());
+        let (width, height) = (self.width, self.height);
+        let remedy = if sanitize {
+            Remedy::Clamp
+        } else {
+            Remedy::Refuse
         };
-        if !sanitize {
-            let c = texel.into_iter().position(|c| !sound(c)).unwrap_or(0);
-            return Err(EnvError::Texel {
-                file: self.file.clone(),
-                x,
-                y,
-                channel: ['R', 'G', 'B'][c],
-                value: texel[c],
-                count: defects.non_finite + defects.negative,
-            });
-        }
-        for texel in &mut self.texels {
-            for c in texel {
-                if *c == f32::INFINITY {
-                    *c = largest;
-                } else if !sound(*c) {
-                    *c = 0.0;
-                }
-            }
-        }
-        self.defects = defects;
+        let mut image = Image {
+            width,
+            height,
+            pixels: std::mem::take(&mut self.texels),
+        };
+        let file = self.file.clone();
+        let shown = |x, y| self.in_domain(x, y);
+        self.defects = texels::check(&mut image, shown, file.as_deref(), remedy)?;
+        self.texels = image.pixels;
         Ok(())
     }
 

@@ -12,6 +12,9 @@ fn size(layout: Layout) -> usize {
         Layout::LatLong => 256,
         Layout::Angular => 512,
         Layout::MirrorBall => 1024,
+        // Rows of a face.
+        layout if layout.arrangement().is_some() => 128,
+        _ => 512,
     }
 }
 
@@ -62,13 +65,13 @@ fn every_layout_shows_every_label_unmirrored() {
         let image = six_axes(layout, size(layout));
         let env = Environment::from_image(image.clone(), layout).unwrap();
         assert_eq!(wrong_in_all(&env, layout), 0, "{layout}");
-        // Negative controls: mirrored left to right, and upside down.
+        // Negative controls: mirrored left to right, and upside down, which leaves a strip its X and signs.
         let (w, h) = (image.width, image.height);
         let mirrored = Image::from_fn(w, h, |x, y| image.get(w - 1 - x, y));
         let flipped = Image::from_fn(w, h, |x, y| image.get(x, h - 1 - y));
         for turned in [mirrored, flipped] {
             let env = Environment::from_image(turned, layout).unwrap();
-            assert!(wrong_in_all(&env, layout) > 100, "{layout}");
+            assert!(wrong_in_all(&env, layout) > 20, "{layout}");
         }
     }
 }

@@ -65,14 +65,42 @@ impl CubeMap {
         Ok(())
     }
 
+    /// Bytes from the start of a file that [`CubeMap::is_in`] needs.
+    pub const HEADER: usize = 148;
+
+    /// Whether a file that begins like this holds a cube map: KTX2 or DDS with six faces. Nothing is checked besides.
+    pub fn is_in(start: &[u8]) -> bool {
+        let number = |at: usize| {
+            let bytes = start.get(at..at + 4)?.try_into().ok()?;
+            Some(u32::from_le_bytes(bytes))
+        };
+        match FileFormat::of_content(start) {
+            Some(FileFormat::Ktx2) => number(36) == Some(6),
+            // The old header's mark, or that of DX10.
+            Some(FileFormat::Dds) => {
+                let dx10 = start.get(84..88) == Some(b"DX10");
+                number(112).is_some_and(|caps| caps & 0x200 != 0)
+                    || dx10 && number(136).is_some_and(|flags| flags & 4 != 0)
+            }
+            _ => false,
+        }
+    }
+
     /// Reads a KTX2 or DDS file, whatever its name, within the default [`Limits`].
     ///
     /// # Errors
     /// Every variant of [`ImageError`] but `Parameter`; `Unsupported` for a file that holds a plain picture.
     pub fn read(path: &Path) -> Result<Self, ImageError> {
-        let limits = Limits::default();
+        Self::read_within(path, &Limits::default())
+    }
+
+    /// [`CubeMap::read`] within other limits.
+    ///
+    /// # Errors
+    /// As [`CubeMap::read`].
+    pub fn read_within(path: &Path, limits: &Limits) -> Result<Self, ImageError> {
         let bytes = limits.read_file(path)?;
-        Self::of_texture(&path.display().to_string(), &bytes, &limits)
+        Self::of_texture(&path.display().to_string(), &bytes, limits)
     }
 
     /// [`CubeMap::read`] of bytes in memory.
@@ -82,14 +110,6 @@ impl CubeMap {
     pub fn decode(bytes: &[u8], limits: &Limits) -> Result<Self, ImageError> {
         limits.check_bytes(crate::format::MEMORY, bytes.len() as u64)?;
         Self::of_texture(crate::format::MEMORY, bytes, limits)
-    }
-
-    /// [`CubeMap::decode`] for a file of this name.
-    ///
-    /// # Errors
-    /// As [`CubeMap::read`].
-    pub fn decode_named(file: &Path, bytes: &[u8], limits: &Limits) -> Result<Self, ImageError> {
-        Self::of_texture(&file.display().to_string(), bytes, limits)
     }
 
     fn of_texture(file: &str, bytes: &[u8], limits: &Limits) -> Result<Self, ImageError> {

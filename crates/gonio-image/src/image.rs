@@ -129,11 +129,7 @@ impl Image {
             }
             FileFormat::Png => self.write_png(path, ToneMap::Linear, 0.0),
             kind @ (FileFormat::Ktx2 | FileFormat::Dds) => {
-                self.check_shape(path)?;
-                let format = TexelFormat::Half;
-                let faces: &[Image] = std::slice::from_ref(self);
-                let bytes = format::texture::encode(path, kind, &[faces], format)?;
-                atomic::write(path, &bytes)
+                self.write_as_texture(path, kind, TexelFormat::Half)
             }
             FileFormat::Jpeg => Err(ImageError::unsupported(
                 path.display().to_string(),
@@ -141,6 +137,26 @@ impl Image {
                 "write .png, .exr or .hdr",
             )),
         }
+    }
+
+    /// Writes a KTX2 or DDS file of one picture, by the name's extension, and reads it again before it is put in place.
+    ///
+    /// # Errors
+    /// As [`CubeMap::write`](crate::CubeMap::write).
+    pub fn write_texture(&self, path: &Path, format: TexelFormat) -> Result<(), ImageError> {
+        self.write_as_texture(path, FileFormat::of_extension(path)?, format)
+    }
+
+    fn write_as_texture(
+        &self,
+        path: &Path,
+        kind: FileFormat,
+        format: TexelFormat,
+    ) -> Result<(), ImageError> {
+        self.check_shape(path)?;
+        let faces: &[Image] = std::slice::from_ref(self);
+        let bytes = format::texture::encode(path, kind, &[faces], format)?;
+        atomic::write(path, &bytes)
     }
 
     /// Writes an 8-bit PNG: the image times 2^`exposure_ev`, tone mapped, with the sRGB transfer.

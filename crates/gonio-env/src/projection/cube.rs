@@ -220,7 +220,7 @@ pub fn direction<R: Real>(uv: [R; 2], arrangement: &Arrangement, faces: &Faces) 
     d * d.dot(d).sqrt().recip()
 }
 
-/// Where the direction `d` is shown.
+/// Where the direction `d` is shown: at least 2e-6 of a face away from its edges.
 #[inline(always)]
 pub fn uv<R: Real>(d: Vec3<R>, arrangement: &Arrangement, faces: &Faces) -> [R; 2] {
     let half = R::lit(0.5);
@@ -233,8 +233,16 @@ pub fn uv<R: Real>(d: Vec3<R>, arrangement: &Arrangement, faces: &Faces) -> [R; 
         let over = depth.max(R::lit(1e-30)).recip();
         let cell = arrangement.cell(faces, k);
         let sign = R::lit(if cell.turned { -0.5 } else { 0.5 });
-        let s = d.dot(vector(face.right)) * over * sign + half;
-        let t = d.dot(vector(face.down)) * over * sign + half;
+        // Not quite to the edge, where in single precision the next cell could begin.
+        let most = R::lit(0.5 - 2e-6);
+        let s = (d.dot(vector(face.right)) * over * sign)
+            .max(R::zero() - most)
+            .min(most)
+            + half;
+        let t = (d.dot(vector(face.down)) * over * sign)
+            .max(R::zero() - most)
+            .min(most)
+            + half;
         let u = (s + R::lit(cell.column as f64)) * R::lit(1.0 / arrangement.columns as f64);
         let v = (t + R::lit(cell.row as f64)) * R::lit(1.0 / arrangement.rows as f64);
         uv = [R::select(nearer, u, uv[0]), R::select(nearer, v, uv[1])];

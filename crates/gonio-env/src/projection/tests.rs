@@ -56,6 +56,69 @@ fn the_axes_stand_where_the_conventions_put_them() {
                 [1.0, 0.5],
             ],
         ),
+        (
+            Layout::CubeCross,
+            [
+                [0.625, 0.5],
+                [0.125, 0.5],
+                [0.375, 1.0 / 6.0],
+                [0.375, 5.0 / 6.0],
+                [0.875, 0.5],
+                [0.375, 0.5],
+            ],
+        ),
+        (
+            Layout::CubeCrossVertical,
+            [
+                [5.0 / 6.0, 0.375],
+                [1.0 / 6.0, 0.375],
+                [0.5, 0.125],
+                [0.5, 0.625],
+                [0.5, 0.875],
+                [0.5, 0.375],
+            ],
+        ),
+        (
+            Layout::CubeStrip,
+            [0.5, 1.5, 2.5, 3.5, 4.5, 5.5].map(|k| [k / 6.0, 0.5]),
+        ),
+        (
+            Layout::CubeStripVertical,
+            [0.5, 1.5, 2.5, 3.5, 4.5, 5.5].map(|k| [0.5, k / 6.0]),
+        ),
+        (
+            Layout::Octahedral,
+            [
+                [1.0, 0.5],
+                [0.0, 0.5],
+                [0.5, 0.0],
+                [0.5, 1.0],
+                [1.0, 0.0],
+                [0.5, 0.5],
+            ],
+        ),
+        (
+            Layout::EqualAreaOctahedral,
+            [
+                [1.0, 0.5],
+                [0.0, 0.5],
+                [0.5, 0.0],
+                [0.5, 1.0],
+                [1.0, 0.0],
+                [0.5, 0.5],
+            ],
+        ),
+        (
+            Layout::DualParaboloid,
+            [
+                [0.5, 0.5],
+                [0.0, 0.5],
+                [0.25, 0.0],
+                [0.25, 1.0],
+                [0.75, 0.5],
+                [0.25, 0.5],
+            ],
+        ),
     ];
     for (layout, places) in expected {
         for ((d, name), place) in AXES.iter().zip(places) {
@@ -92,8 +155,8 @@ fn a_rendered_mirrored_ball_gives_the_photograph_back() {
 #[test]
 fn the_jacobian_integrates_to_the_sphere() {
     for layout in Layout::ALL {
-        // Midpoint rule on n² cells. Lat-long and angular map fall to 0 at their ends (error O(n⁻²)); the ball's disc is
-        // a count of cells, whose error is O(n^-1.3) for a circle.
+        // Midpoint rule on n² cells, of which a cube's faces have whole numbers. Smooth or falling to 0 at the ends, its error
+        // is O(n⁻²); a disc with an edge is a count of cells, whose error is O(n^-1.3) for a circle.
         let n = 1500;
         let mut sum = 0.0;
         for j in 0..n {
@@ -106,7 +169,7 @@ fn the_jacobian_integrates_to_the_sphere() {
             }
         }
         let relative = sum / f64::from(n * n) / (4.0 * PI) - 1.0;
-        let bound = if layout == Layout::MirrorBall {
+        let bound = if matches!(layout, Layout::MirrorBall | Layout::DualParaboloid) {
             2e-4
         } else {
             1e-5
@@ -119,12 +182,20 @@ fn the_jacobian_integrates_to_the_sphere() {
 
 #[test]
 fn outside_the_disc_is_nothing() {
-    for layout in [Layout::Angular, Layout::MirrorBall] {
-        for uv in [[0.0, 0.0], [1.0, 0.0], [0.99, 0.99], [0.1, 0.1]] {
+    for layout in [Layout::Angular, Layout::MirrorBall, Layout::DualParaboloid] {
+        for uv in [[0.0, 0.0], [1.0, 0.0], [0.99, 0.99], [0.01, 0.1]] {
             assert!(!layout.contains::<f64>(uv));
             assert_eq!(layout.jacobian::<f64>(uv), 0.0);
         }
-        assert!(layout.contains::<f64>([0.5, 0.001]));
+        assert!(layout.contains::<f64>(if layout.is_disc() {
+            [0.5, 0.001]
+        } else {
+            [0.25, 0.001]
+        }));
+    }
+    for uv in [[0.1, 0.1], [0.6, 0.1], [0.9, 0.9]] {
+        assert!(!Layout::CubeCross.contains::<f64>(uv));
+        assert_eq!(Layout::CubeCross.jacobian::<f64>(uv), 0.0);
     }
     assert!(Layout::LatLong.contains::<f64>([0.0, 0.0]));
     assert!(!Layout::LatLong.contains::<f64>([1.01, 0.0]));
@@ -185,6 +256,21 @@ proptest! {
         for layout in Layout::ALL {
             let [x, y] = disc_from_uv([u, v]);
             if layout.is_disc() && x * x + y * y > 0.98 {
+                continue;
+            }
+            // Differences don't reach over edges of cells, folds and rims.
+            let near = |c: f64| (c - c.round()).abs() < 1e-3;
+            let [columns, rows] = layout.shape();
+            let at_edge = layout.arrangement().is_some() && (near(u * columns as f64) || near(v * rows as f64));
+            let folds = [x, y, 1.0 - x.abs() - y.abs()];
+            let at_fold = matches!(layout, Layout::Octahedral | Layout::EqualAreaOctahedral)
+                && folds.iter().any(|c| c.abs() < 1e-3);
+            let rim = layout == Layout::DualParaboloid && layout.jacobian([u, v]) < 8.1;
+            if at_edge || at_fold || rim {
+                continue;
+            }
+            if !layout.contains([u, v]) {
+                prop_assert_eq!(layout.jacobian([u, v]), 0.0);
                 continue;
             }
             // Area of the parallelogram of central differences; their error is O(h²) ≈ 1e-8 times third derivatives.

@@ -1,7 +1,7 @@
 //! A picture of any layout, interpolated across its seams.
 
-use crate::projection::{View, disc_from_uv};
 use crate::Layout;
+use crate::projection::{View, disc_from_uv};
 use gonio_image::Image;
 use gonio_num::Vec3;
 
@@ -38,10 +38,18 @@ impl<'a> Lookup<'a> {
         self.image.pixels[y * self.image.width + x]
     }
 
-    /// The texel that holds (u, v).
+    /// The texel that holds (u, v); where its centre shows nothing, the one that shows what is there.
     pub fn nearest(&self, uv: [f32; 2]) -> [f32; 3] {
         let [x, y] = self.place(uv);
-        self.at(x.floor() as i64, y.floor() as i64)
+        let (x, y) = (x.floor() as i64, y.floor() as i64);
+        match self.view.layout() {
+            Layout::Angular | Layout::MirrorBall => self.at_rim(x, y),
+            Layout::DualParaboloid => {
+                let half = self.cell[0];
+                self.on_discs(x, y, [x.div_euclid(half).clamp(0, 1) * half, 0])
+            }
+            _ => self.at(x, y),
+        }
     }
 
     fn place(&self, uv: [f32; 2]) -> [f32; 2] {
@@ -83,10 +91,7 @@ impl<'a> Lookup<'a> {
     /// The texel in column `x`, row `y` of the picture as the cell at `corner` would go on.
     fn tap(&self, x: i64, y: i64, corner: [i64; 2]) -> [f32; 3] {
         let (i, j) = (x - corner[0], y - corner[1]);
-        let out = [
-            i < 0 || i >= self.cell[0],
-            j < 0 || j >= self.cell[1],
-        ];
+        let out = [i < 0 || i >= self.cell[0], j < 0 || j >= self.cell[1]];
         let (width, height) = (self.image.width as i64, self.image.height as i64);
         match self.view.layout() {
             Layout::LatLong => self.at(x.rem_euclid(width), y),
@@ -166,7 +171,8 @@ impl<'a> Lookup<'a> {
         }
         // A texel whose centre is inside is at most a diagonal away.
         let k = (1.0 - 1.5 / n).max(0.0) / r;
-        self.nearest([(0.5 + 0.5 * px * k) as f32, (0.5 - 0.5 * py * k) as f32])
+        let place = |p: f64| ((0.5 + 0.5 * p * k) * n).floor() as i64;
+        self.at(place(px), place(-py))
     }
 
     /// The texel of a half of the dual paraboloid, or, outside its disc, the one of the other that shows the same.
@@ -177,12 +183,14 @@ impl<'a> Lookup<'a> {
         if q <= 1.0 {
             return self.at(x, y);
         }
-        // The paraboloid goes on beyond the rim: 1/q of the other's coordinates, mirrored.
+        // The paraboloid goes on beyond the rim: 1/q of the other's coordinates, mirrored. Right at the rim, a little further
+        // in, where a texel's centre is inside.
+        let k = (1.0 / q).min((1.0 - 1.5 / self.cell[0] as f64) / q.sqrt());
         let other = self.cell[0] - corner[0];
         let place = |p: f64, size: i64| ((p + 1.0) * 0.5 * size as f64).floor() as i64;
         self.at(
-            other + place(-px / q, self.cell[0]),
-            place(-py / q, self.cell[1]),
+            other + place(-px * k, self.cell[0]),
+            place(-py * k, self.cell[1]),
         )
     }
 }

@@ -89,7 +89,11 @@ pub(crate) fn resample(mut from: Image, from_view: &View, target: &Target) -> Im
     let view = &target.view;
     let [width, height] = view.layout().shape().map(|n| n * target.size);
     let copied = target.filter != Filter::Bilinear && is_aligned(&from, from_view, target);
-    let filter = if copied { Filter::Nearest } else { target.filter };
+    let filter = if copied {
+        Filter::Nearest
+    } else {
+        target.filter
+    };
     if filter == Filter::Area {
         // Along a side, of the whole sphere's texels.
         let linear = |image: &Image| {
@@ -257,7 +261,7 @@ fn is_aligned(from: &Image, from_view: &View, target: &Target) -> bool {
 pub(crate) fn halved(image: &Image, view: &View) -> Option<Image> {
     let layout = view.layout();
     let [columns, rows] = layout.shape();
-    if image.width % (2 * columns) != 0 || image.height % (2 * rows) != 0 {
+    if !image.width.is_multiple_of(2 * columns) || !image.height.is_multiple_of(2 * rows) {
         return None;
     }
     let (width, height) = (image.width / 2, image.height / 2);
@@ -301,10 +305,10 @@ pub const SIX_AXES: [Vec3<f64>; 6] = [
 ];
 
 /// Rows that a picture is measured with.
-const MEASURED_ROWS: usize = 1024;
+const MEASURED_ROWS: usize = 512;
 
-/// Irradiance \[W m⁻²] on the six axes, of a picture after the rotation: a midpoint sum over texels, halved while there are
-/// more than enough and divided where there are few.
+/// Irradiance \[W m⁻²] on the six axes, of a picture after the rotation: the flux of its texels, each with its mean radiance
+/// and the solid angle of what it shows; halved while there are more than enough, summed in parts where there are few.
 pub(crate) fn irradiance(image: &Image, view: &View, rotation: &Rotation) -> [[f64; 3]; 6] {
     let [columns, rows] = view.layout().shape();
     let cell = |image: &Image| (image.width / columns).min(image.height / rows);
@@ -316,8 +320,11 @@ pub(crate) fn irradiance(image: &Image, view: &View, rotation: &Rotation) -> [[f
         }
     }
     let image = smaller.as_ref().unwrap_or(image);
-    let lookup = Lookup::new(image, view);
-    let parts = (MEASURED_ROWS / 4).div_ceil(cell(image).max(1)).max(1);
+    // Texels that a rim cuts are in parts, too.
+    let cut = view.layout().is_disc() || view.layout() == crate::Layout::DualParaboloid;
+    let parts = (MEASURED_ROWS / 2)
+        .div_ceil(cell(image).max(1))
+        .max(if cut { 4 } else { 1 });
     let (width, height) = (image.width * parts, image.height * parts);
     let layout = view.layout();
     let row_sums = (0..height).into_par_iter().map(|y| {
@@ -333,11 +340,7 @@ pub(crate) fn irradiance(image: &Image, view: &View, rotation: &Rotation) -> [[f
             }
             total += weight;
             let d: Vec3<f64> = view.direction(uv);
-            let radiance = if parts == 1 {
-                image.pixels[y * width + x]
-            } else {
-                lookup.bilinear(d.to_f32())
-            };
+            let radiance = image.pixels[y / parts * image.width + x / parts];
             for (sum, axis) in sums.iter_mut().zip(SIX_AXES) {
                 let cosine = turned_back(rotation, axis).dot(d).max(0.0);
                 for (s, l) in sum.iter_mut().zip(radiance) {

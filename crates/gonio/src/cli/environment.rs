@@ -8,7 +8,7 @@ use gonio_scene::{LoadOptions, Scene};
 /// Which light comes from infinitely far away.
 #[derive(clap::Args)]
 pub(super) struct EnvironmentArguments {
-    /// Light from infinitely far away: a panorama (.hdr, .exr, .png, .jpg), or uniform:RADIANCE
+    /// Light from infinitely far away: a panorama (.hdr, .exr, .png, .jpg, .ktx2, .dds; or a folder of faces), or uniform:RADIANCE
     #[arg(long, value_name = "FILE")]
     env: Option<String>,
     /// Turn the environment about the vertical, counter-clockwise seen from above
@@ -67,12 +67,20 @@ pub(super) fn replaced(environment: &Environment) -> Option<String> {
 /// How a panorama is read.
 #[derive(clap::Args)]
 pub(super) struct PanoramaArguments {
-    /// Layout of the panorama: lat-long, angular or mirror-ball [default: found from its shape]
-    #[arg(long, value_name = "LAYOUT")]
+    /// Layout of the panorama: lat-long, cube, cube-cross, octahedral, equal-area-octahedral, angular, mirror-ball, dual-paraboloid …
+    /// [default: found by its content and shape]
+    #[arg(long, value_name = "LAYOUT", visible_alias = "from")]
     env_layout: Option<String>,
+    /// Whose axes and orientation the panorama has: gonio, pbrt, mitsuba, blender, gltf, opengl or unreal
+    /// [default: opengl for cubes in .ktx2 and .dds, else gonio]
+    #[arg(long, value_name = "NAME", visible_alias = "from-convention")]
+    env_convention: Option<String>,
     /// Replace NaN, infinite and negative texels of the panorama instead of refusing it
     #[arg(long)]
     env_sanitize: bool,
+    /// Replace such texels by the mean of their sound neighbours
+    #[arg(long, visible_alias = "repair")]
+    env_repair: bool,
 }
 
 impl PanoramaArguments {
@@ -84,7 +92,12 @@ impl PanoramaArguments {
         };
         let options = gonio_env::LoadOptions {
             layout,
+            convention: match &self.env_convention {
+                None => None,
+                Some(word) => Some(word.parse()?),
+            },
             sanitize: self.env_sanitize,
+            repair: self.env_repair,
             ..Default::default()
         };
         Ok(Environment::parse(text, &options)?)

@@ -56,6 +56,15 @@ impl Failure {
         self.help = Some(help.into());
         self
     }
+    /// With words of its help replaced, each pair once.
+    pub fn rephrase(mut self, words: &[(&str, &str)]) -> Self {
+        if let Some(help) = &mut self.help {
+            for (from, to) in words {
+                *help = help.replace(from, to);
+            }
+        }
+        self
+    }
     /// Says first what the failure is about.
     pub fn about(mut self, what: &str) -> Self {
         self.message = format!("{what}: {}", self.message);
@@ -125,12 +134,11 @@ impl From<EnvError> for Failure {
         let help = error.help();
         match error {
             EnvError::Image(e) => e.into(),
-            EnvError::UnknownLayout { .. } | EnvError::Parameter { .. } => Self::usage(message)
-                .with_help(
-                    help.unwrap_or(
-                        "an environment is a picture, uniform:1 or uniform:r/g/b".into(),
-                    ),
-                ),
+            EnvError::UnknownLayout { .. }
+            | EnvError::UnknownConvention { .. }
+            | EnvError::Parameter { .. } => Self::usage(message).with_help(
+                help.unwrap_or("an environment is a picture, uniform:1 or uniform:r/g/b".into()),
+            ),
             EnvError::NotFound { file, suggestion } => match (suggestion, nearest_file(&file)) {
                 (None, Some(near)) => Self::input(message).with_help(did_you_mean(&near)),
                 _ => Self {

@@ -6,7 +6,7 @@ use super::view::refuse;
 use crate::SceneError;
 use crate::light::{Light, SpotCone};
 use crate::{LoadOptions, SceneBuilder};
-use gonio_env::{Environment, Layout};
+use gonio_env::{Convention, Environment, Layout};
 use gonio_num::Vec3;
 use std::path::Path;
 
@@ -105,7 +105,7 @@ pub(super) fn read(
 /// The panorama in a file, or what is wrong with it and how to go on.
 fn panorama(
     path: &Path,
-    layout: Option<Layout>,
+    (layout, convention): (Option<Layout>, Option<Convention>),
     options: &LoadOptions,
 ) -> Result<Environment, (String, Option<String>)> {
     let bytes = options.files.read(path, options.max_bytes).map_err(|e| {
@@ -114,6 +114,7 @@ fn panorama(
     })?;
     let reading = gonio_env::LoadOptions {
         layout,
+        convention,
         sanitize: options.sanitize,
         ..Default::default()
     };
@@ -127,19 +128,27 @@ pub(super) fn environment(
     value: &Value,
     options: &LoadOptions,
 ) -> Result<(), SceneError> {
-    let keys = ["file", "uniform", "layout", "rotate_deg", "scale"];
-    let section = Section::new(source, "[environment]", value, &keys)?;
-    let layouts = [
-        ("lat-long", Layout::LatLong),
-        ("angular", Layout::Angular),
-        ("mirror-ball", Layout::MirrorBall),
+    let keys = [
+        "file",
+        "uniform",
+        "layout",
+        "convention",
+        "rotate_deg",
+        "scale",
     ];
-    let layout = section.choice("layout", &layouts)?;
+    let section = Section::new(source, "[environment]", value, &keys)?;
+    let layouts = Layout::ALL.map(|layout| (layout.name(), layout));
+    let conventions = Convention::ALL.map(|convention| (convention.name(), convention));
+    let turned = (
+        section.choice("layout", &layouts)?,
+        section.choice("convention", &conventions)?,
+    );
     let mut made = match (section.path("file")?, section.colour("uniform")?) {
-        (Some(path), None) => panorama(&path, layout, options)
+        (Some(path), None) => panorama(&path, turned, options)
             .map_err(|(message, help)| section.error_at("file", message, help))?,
         (None, Some(radiance)) => {
             refuse(&section, "layout", "a uniform environment has none")?;
+            refuse(&section, "convention", "a uniform environment has none")?;
             Environment::uniform(radiance)
         }
         (None, None) => return Err(section.error("[environment] needs `file` or `uniform`", None)),

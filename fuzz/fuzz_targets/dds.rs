@@ -1,0 +1,4 @@
+//! Bytes as a DDS file.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| gonio_fuzz::read_texture(bytes));
