@@ -9,7 +9,7 @@ use gonio_num::expr::module;
 use gonio_num::{Real, Vec3};
 use gonio_radiometry::sequence::Rng;
 use gonio_shader::{Settings, Shader};
-use gonio_verify::Effort;
+use gonio_verify::{Effort, Outcome, Property};
 use std::path::{Path, PathBuf};
 
 fn example(name: &str) -> String {
@@ -348,4 +348,25 @@ fn half_a_sampling_is_left_aside() {
         // f cosθ over cosθ/π.
         assert!((s.weight[0] - 0.1 * std::f64::consts::PI).abs() < 1e-7);
     }
+}
+
+/// BRDF Explorer asks for directions above the surface only; a shader in another language is taken as it is.
+#[test]
+fn only_files_of_brdf_explorer_are_dark_below() {
+    let horizon = |path: &str| {
+        let spec = ModelSpec::parse(path).unwrap();
+        let report = check(&spec, Effort::Quick).unwrap();
+        let verdict = report.verdict(Property::Horizon).unwrap();
+        verdict.outcome
+    };
+    let (_folder, path) = written(
+        "lambert.brdf",
+        "analytic\n::begin shader\nvec3 BRDF(vec3 L, vec3 V, vec3 N, vec3 X, vec3 Y) { return vec3(0.3); }\n::end shader\n",
+    );
+    assert_eq!(horizon(&path), Outcome::Pass);
+    let (_folder, path) = written(
+        "lambert.glsl",
+        "vec3 eval(vec3 wi, vec3 wo) { return vec3(0.3); }",
+    );
+    assert_eq!(horizon(&path), Outcome::Fail);
 }

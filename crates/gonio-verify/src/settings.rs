@@ -128,12 +128,12 @@ impl Settings {
     }
 
     /// The heights z at which a light is looked at on its way to the horizon. The last is far below the width of every lobe
-    /// that the precision can carry, and above the 1e-8 or so at which code guards a division by cosθ: a guard makes a jump look as if
+    /// that the precision can carry, and above the 1e-6 or less at which code guards a division by cosθ: a guard makes a jump look as if
     /// light faded.
     pub(crate) fn sinking(&self) -> [f64; 2] {
         match self.precision {
-            Precision::Double => [1e-5, 1e-7],
-            Precision::Single => [1e-4, 1e-6],
+            Precision::Double => [1e-4, 2e-6],
+            Precision::Single => [1e-4, 1e-5],
         }
     }
 

@@ -4,8 +4,10 @@
 // Helpers of tests are tests.
 #![allow(clippy::unwrap_used)]
 
+use gonio_num::{Real, Vec3};
 use gonio_verify::specimen::{self, Caught, Ggx, Lambertian, Specimen, right};
-use gonio_verify::{Expectation, Outcome, Property};
+use gonio_verify::{Effort, Expectation, Outcome, Property, Subject, check};
+use std::f64::consts::PI;
 
 /// Looks at a specimen; `GONIO_SHOW` prints the report.
 fn look(specimen: &Specimen) -> Caught {
@@ -95,4 +97,27 @@ fn a_declared_lack_is_reported_with_its_cost() {
         "{report}"
     );
     assert!(report.to_string().contains("! lacks isotropy"), "{report}");
+}
+
+/// An albedo above 1 between the angles that are looked at first (…, 32.9°, 47.1°, …), where it is 0.93 and below.
+#[test]
+fn energy_between_two_angles_is_found() {
+    let albedo = |wo: Vec3<f64>| {
+        let theta: f64 = wo.z.min(1.0);
+        let off = (Real::acos(theta).to_degrees() - 38.0) / 4.0;
+        let bump: f64 = Real::exp(-off * off);
+        0.9 + 0.15 * bump
+    };
+    for theta in [32.9f64, 47.1] {
+        let z: f64 = Real::cos(theta.to_radians());
+        assert!(albedo(Vec3::new(0.0, 0.0, z)) < 0.94);
+    }
+    let eval = |wi: Vec3<f64>, wo: Vec3<f64>| match wi.z > 0.0 && wo.z > 0.0 {
+        true => [albedo(wo) / PI; 3],
+        false => [0.0; 3],
+    };
+    let subject = Subject::new("a bump at 38°", &eval);
+    let report = check(&subject, &Expectation::PHYSICAL, Effort::Quick, "bump").unwrap();
+    let v = report.verdict(Property::EnergyConservation).unwrap();
+    assert!(v.outcome == Outcome::Fail && v.figure > 1.0, "{report}");
 }

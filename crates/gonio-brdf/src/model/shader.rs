@@ -9,6 +9,7 @@ use crate::{
 };
 use gonio_num::{Real, Vec3};
 use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density};
+use gonio_shader::Language;
 use gonio_verify::{Reflection, SubjectFailed, SubjectSample};
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -52,7 +53,7 @@ fn declares(_spec: &ModelSpec) -> Declares {
 /// f(ωi, ωo) as a shader computes it, run without a GPU.
 ///
 /// What the shader gives below the horizon is taken for 0, so that nothing shines through a surface; the check of a shader looks at it as
-/// it is. A value that is negative or no number stays as it is, and a rendering counts and reports it.
+/// it is, but for BRDF Explorer's files, since that program asks them for directions above the surface only. A value that is negative or no number stays as it is, and a rendering counts and reports it.
 ///
 /// A shader with `sample` and `pdf` draws directions itself. With neither, directions are drawn by the cosine; nor can one of the two
 /// alone serve: a density that nothing is drawn by has no use, and a direction whose density elsewhere isn't known can't be combined with
@@ -242,8 +243,13 @@ impl<R: Number<Mask = bool> + Into<f64> + Sync> Reflection for Raw<'_, R> {
         shader
             .eval_many(values, &rounded(wi), &rounded(wo), &mut found)
             .map_err(failed)?;
-        for (f, found) in f.iter_mut().zip(found) {
-            *f = found.map(Into::into);
+        let asked_above_only = shader.language() == Language::Brdf;
+        for (k, (f, found)) in f.iter_mut().zip(found).enumerate() {
+            let below = !(wi[k].z > 0.0 && wo[k].z > 0.0);
+            *f = match below && asked_above_only {
+                true => [0.0; 3],
+                false => found.map(Into::into),
+            };
         }
         Ok(())
     }

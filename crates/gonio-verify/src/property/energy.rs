@@ -86,11 +86,11 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> [Verdict; 2] {
     v.witness = Some(witness);
     let theta = |a: &Albedo| crate::verdict::Direction::from(a.furnace.wo).theta_deg;
     v.detail = format!(
-        "directional albedo at most {:.6} (at {:.1}°), at least {:.6} (at {:.1}°)",
-        figure,
-        theta(worst),
+        "directional albedo from {:.6} (at {:.1}°) to {:.6} (at {:.1}°)",
         darkest.value,
         theta(darkest),
+        figure,
+        theta(worst),
     );
     let unsure = all.iter().map(|a| a.high - a.low).fold(0.0, f64::max);
     let mut v = v.judge(low > bound, c.expect.energy_conserving);
@@ -98,6 +98,12 @@ pub(super) fn check(c: &Checker, furnaces: &[Furnace]) -> [Verdict; 2] {
         v.note = Some(format!(
             "an albedo is known within ±{:.3} only",
             0.5 * unsure
+        ));
+    }
+    let not_finite: u64 = furnaces.iter().map(|f| f.not_finite).sum();
+    if not_finite > 0 {
+        v.note = Some(format!(
+            "{not_finite} of the values that were integrated are NaN or infinite, and counted as 0"
         ));
     }
     [v, loss]

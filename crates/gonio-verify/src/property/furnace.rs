@@ -9,7 +9,7 @@ use crate::reflection::SubjectFailed;
 use crate::statistics::{Moments, bernstein_deviation};
 use crate::subject::Pair;
 use crate::verdict::Property;
-use gonio_num::Vec3;
+use gonio_num::{Real, Vec3};
 use rayon::prelude::*;
 
 /// How much harder a suspicion is looked at before it becomes a verdict.
@@ -38,6 +38,8 @@ pub(super) struct Furnace {
     pub draws: u64,
     pub delta_draws: u64,
     pub evaluations: u64,
+    /// Directions at which f wasn't finite; they count as 0.
+    pub not_finite: u64,
 }
 
 /// Outgoing directions from the normal to grazing, denser towards grazing where energy goes wrong, spiralling in azimuth by
@@ -78,20 +80,71 @@ pub(super) fn directions(c: &Checker) -> Vec<Vec3<f64>> {
     viewers(c, 2 * c.settings.directions, 89.5)
 }
 
-/// A furnace for each of the [`directions`].
+/// How often the angle of the brightest furnace is looked for between its neighbours.
+const REFINEMENTS: usize = 2;
+
+/// How often [`Checker::step`] is called by [`measure`].
+pub(super) fn steps(c: &Checker) -> usize {
+    directions(c).len() + REFINEMENTS
+}
+
+/// A furnace for each of the [`directions`], and for some beside the brightest of them: an albedo may exceed 1 between two.
 pub(super) fn measure(c: &Checker) -> Result<Vec<Furnace>, SubjectFailed> {
-    directions(c)
-        .into_par_iter()
+    let mut all = towards(c, directions(c), 0)?;
+    for _ in 0..REFINEMENTS {
+        let more = towards(c, beside_the_brightest(&all), all.len())?;
+        all.extend(more);
+        c.step();
+    }
+    Ok(all)
+}
+
+/// A furnace for each of `wo`, of which the first is number `first` of all.
+fn towards(c: &Checker, wo: Vec<Vec3<f64>>, first: usize) -> Result<Vec<Furnace>, SubjectFailed> {
+    wo.into_par_iter()
         .enumerate()
         .map(|(k, wo)| {
-            let mut furnace = at(c, wo, k, 1)?;
+            let mut furnace = at(c, wo, first + k, 1)?;
             if suspicious(c, &furnace) {
                 let before = furnace.evaluations;
-                furnace = at(c, wo, k, SECOND_LOOK)?;
+                furnace = at(c, wo, first + k, SECOND_LOOK)?;
                 furnace.evaluations += before;
             }
-            c.step();
+            if first == 0 {
+                c.step();
+            }
             Ok(furnace)
+        })
+        .collect()
+}
+
+/// Directions in the azimuth of the brightest furnace, half-way to the next steeper and the next shallower one on its side.
+fn beside_the_brightest(all: &[Furnace]) -> Vec<Vec3<f64>> {
+    let albedo = |f: &Furnace| {
+        (0..3)
+            .map(|k| f.quadrature[k] + f.delta[k].mean())
+            .fold(0.0, f64::max)
+    };
+    let brightest = all
+        .iter()
+        .max_by(|a, b| albedo(a).total_cmp(&albedo(b)))
+        .expect("invariant: there is at least one direction");
+    let wo = brightest.wo;
+    let angle = |w: Vec3<f64>| Real::acos(w.z.abs().min(1.0));
+    let here = angle(wo);
+    let others = || {
+        let same_side = all.iter().filter(|f| f.wo.z * wo.z > 0.0);
+        same_side.map(|f| angle(f.wo))
+    };
+    let shallower = others().filter(|t| *t < here).max_by(f64::total_cmp);
+    let steeper = others().filter(|t| *t > here).min_by(f64::total_cmp);
+    let azimuth = crate::directions::azimuth(wo);
+    shallower
+        .into_iter()
+        .chain(steeper)
+        .map(|theta| {
+            let w = spherical(0.5 * (theta + here), azimuth);
+            if wo.z < 0.0 { flipped(w) } else { w }
         })
         .collect()
 }
@@ -199,6 +252,7 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Result<Furnace, 
     let partition = Partition::new(points, &seeds, &rules, !c.subject.only_reflects());
     let mut unreachable_at = None;
     let mut most = 0.0;
+    let mut not_finite = 0;
     let integral = integrate(
         |at: &[[f64; 2]]| {
             let pairs: Vec<Pair> = at
@@ -212,6 +266,7 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Result<Furnace, 
                 let f = c.subject.basic(f[i], wi, wo);
                 let [r, g, b] = f.map(|f| f * at[i][0].abs());
                 let brightest = r.max(g).max(b);
+                not_finite += u64::from(!(r + g + b).is_finite());
                 if !c.subject.has_pdf() {
                     return [r, g, b, 0.0, 0.0, 0.0, 0.0];
                 }
@@ -246,5 +301,6 @@ fn at(c: &Checker, wo: Vec3<f64>, index: usize, harder: u64) -> Result<Furnace, 
         draws,
         delta_draws,
         evaluations: integral.evaluations + draws,
+        not_finite,
     })
 }

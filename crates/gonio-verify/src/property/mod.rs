@@ -48,7 +48,7 @@ pub(crate) fn steps(c: &Checker) -> u64 {
     } else {
         0
     };
-    (GROUPS.len() + furnace::directions(c).len() + both) as u64
+    (GROUPS.len() + furnace::steps(c) + both) as u64
 }
 
 /// Every property, in the order of [`Property::ALL`].
