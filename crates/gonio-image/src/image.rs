@@ -78,12 +78,12 @@ impl Image {
         y * self.width + x
     }
 
-    /// Reads an EXR, Radiance HDR, PNG or JPEG file, whatever its name, within the default [`Limits`].
+    /// Reads an EXR, Radiance HDR, PNG, JPEG or TIFF file, whatever its name, within the default [`Limits`].
     ///
     /// - EXR: the channels R, G, B, or Y as grey, of the default layer, else of the first layer that has them.
     ///   Other primaries (`chromaticities`) are converted to Rec. 709, with Bradford's adaptation to D65.
     /// - HDR: values divided by the file's exposure.
-    /// - PNG and JPEG: 8- and 16-bit sRGB, decoded to linear light; alpha is dropped; colour profiles are not applied;
+    /// - PNG, JPEG and TIFF: 8- and 16-bit sRGB, decoded to linear light (floats of a TIFF are linear); alpha is dropped; colour profiles are not applied;
     ///   a JPEG's EXIF orientation is. [`RawImage`] keeps alpha and the codes.
     ///
     /// Values are not altered otherwise: an EXR's NaN stays ([`Image::scan`] finds it).
@@ -131,9 +131,12 @@ impl Image {
             kind @ (FileFormat::Ktx2 | FileFormat::Dds) => {
                 self.write_as_texture(path, kind, TexelFormat::Half)
             }
-            FileFormat::Jpeg => Err(ImageError::unsupported(
+            kind @ (FileFormat::Jpeg | FileFormat::Tiff) => Err(ImageError::unsupported(
                 path.display().to_string(),
-                "writing JPEG",
+                match kind {
+                    FileFormat::Tiff => "writing TIFF",
+                    _ => "writing JPEG",
+                },
                 "write .png, .exr or .hdr",
             )),
         }

@@ -10,6 +10,7 @@
 //! | Radiance HDR | flat, old and new run lengths; exposure; all eight orientations | new run lengths |
 //! | PNG | 1 to 16 bits, grey, palette, alpha | 8 and 16 bits, sRGB transfer |
 //! | JPEG | baseline and progressive, EXIF orientation | no |
+//! | TIFF | 8 and 16 bits, float; grey, RGB, alpha; uncompressed, LZW, deflate, PackBits, JPEG | no |
 //! | KTX2 | one picture or a cube, with levels: half, float, RGB9E5, R11G11B10, BC6H, 8-bit codes | half, float, RGB9E5, BC6H |
 //! | DDS | the same; headers with and without DX10 | half, float, RGB9E5, BC6H, with DX10 |
 //!

@@ -1,16 +1,17 @@
 //! [`RawImage`]: four channels as the file holds them.
 
-use crate::{ImageError, Limits, format, srgb};
+use crate::format::{self, Orientation};
+use crate::{ImageError, Limits, srgb};
 use std::path::Path;
 
 /// The samples of a [`RawImage`]: red, green, blue, alpha.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RawData {
-    /// Codes of 8 bits, of a PNG (1 to 8 bits; fewer are scaled up) or JPEG.
+    /// Codes of 8 bits, of a PNG or TIFF (1 to 8 bits; fewer are scaled up) or JPEG.
     U8(Vec<[u8; 4]>),
-    /// Codes of 16 bits, of a PNG.
+    /// Codes of 16 bits, of a PNG or TIFF.
     U16(Vec<[u16; 4]>),
-    /// Linear values, of an EXR or Radiance HDR.
+    /// Linear values, of an EXR, Radiance HDR or floating-point TIFF.
     F32(Vec<[f32; 4]>),
 }
 
@@ -31,14 +32,32 @@ pub struct RawImage {
 }
 
 impl RawImage {
-    /// Reads an EXR, Radiance HDR, PNG or JPEG file, whatever its name, within the default [`Limits`].
+    /// Reads an EXR, Radiance HDR, PNG, JPEG or TIFF file, whatever its name, within the default [`Limits`].
     ///
     /// # Errors
     /// As [`Image::read`](crate::Image::read).
     pub fn read(path: &Path) -> Result<Self, ImageError> {
         let limits = Limits::default();
         let bytes = limits.read_file(path)?;
-        format::decode_raw(&path.display().to_string(), &bytes, &limits)
+        format::decode_raw(
+            &path.display().to_string(),
+            &bytes,
+            Orientation::Ignore,
+            &limits,
+        )
+    }
+
+    /// [`RawImage::read`] of a photograph: an EXIF orientation is applied, and the file's bytes are handed over too, for
+    /// what else stands in them.
+    ///
+    /// # Errors
+    /// As [`Image::read`](crate::Image::read).
+    pub fn read_upright(path: &Path) -> Result<(Self, Vec<u8>), ImageError> {
+        let limits = Limits::default();
+        let bytes = limits.read_file(path)?;
+        let name = path.display().to_string();
+        let picture = format::decode_raw(&name, &bytes, Orientation::Apply, &limits)?;
+        Ok((picture, bytes))
     }
 
     /// Decodes bytes in memory within the default [`Limits`].
@@ -55,7 +74,7 @@ impl RawImage {
     /// As [`RawImage::decode`].
     pub fn decode_within(bytes: &[u8], limits: &Limits) -> Result<Self, ImageError> {
         limits.check_bytes(format::MEMORY, bytes.len() as u64)?;
-        format::decode_raw(format::MEMORY, bytes, limits)
+        format::decode_raw(format::MEMORY, bytes, Orientation::Ignore, limits)
     }
 
     /// 4: red, green, blue, alpha.

@@ -12,6 +12,7 @@ pub(crate) mod texture;
 pub use texel::TexelFormat;
 
 pub(crate) use primaries::{apply as apply_matrix, to_rec709};
+pub(crate) use raster::Orientation;
 
 use crate::{Image, ImageError, Limits, RawData, RawImage};
 use std::path::Path;
@@ -34,12 +35,14 @@ pub enum FileFormat {
     Ktx2,
     /// DirectDraw Surface, `.dds`.
     Dds,
+    /// TIFF, `.tif` or `.tiff`; read only.
+    Tiff,
 }
 
 impl FileFormat {
     /// The format whose files begin with these bytes.
     pub fn of_content(bytes: &[u8]) -> Option<Self> {
-        const MAGIC: [(&[u8], FileFormat); 7] = [
+        const MAGIC: [(&[u8], FileFormat); 9] = [
             (&[0x76, 0x2f, 0x31, 0x01], FileFormat::Exr),
             (b"#?RADIANCE", FileFormat::Hdr),
             (b"#?RGBE", FileFormat::Hdr),
@@ -47,6 +50,8 @@ impl FileFormat {
             (&[0xff, 0xd8, 0xff], FileFormat::Jpeg),
             (&ktx2::IDENTIFIER, FileFormat::Ktx2),
             (&dds::MAGIC, FileFormat::Dds),
+            (b"II*\0", FileFormat::Tiff),
+            (b"MM\0*", FileFormat::Tiff),
         ];
         MAGIC
             .iter()
@@ -69,6 +74,7 @@ impl FileFormat {
             Some("jpg" | "jpeg") => Ok(Self::Jpeg),
             Some("ktx2") => Ok(Self::Ktx2),
             Some("dds") => Ok(Self::Dds),
+            Some("tif" | "tiff") => Ok(Self::Tiff),
             other => Err(ImageError::unsupported(
                 path.display().to_string(),
                 other.map_or_else(
@@ -94,7 +100,7 @@ fn sniff(file: &str, bytes: &[u8]) -> Result<FileFormat, ImageError> {
             file,
             "start",
             found,
-            "EXR, Radiance HDR, PNG, JPEG, KTX2 or DDS",
+            "EXR, Radiance HDR, PNG, JPEG, TIFF, KTX2 or DDS",
         )
     })
 }
@@ -104,19 +110,16 @@ pub(crate) fn decode_image(file: &str, bytes: &[u8], limits: &Limits) -> Result<
         FileFormat::Exr => openexr::decode_image(file, bytes, limits),
         FileFormat::Hdr => radiance::decode(file, bytes, limits),
         FileFormat::Ktx2 | FileFormat::Dds => texture::decode_image(file, bytes, limits),
-        kind @ (FileFormat::Png | FileFormat::Jpeg) => Ok(Image::from(&raster::decode(
-            file,
-            bytes,
-            kind,
-            raster::Orientation::Apply,
-            limits,
-        )?)),
+        kind @ (FileFormat::Png | FileFormat::Jpeg | FileFormat::Tiff) => Ok(Image::from(
+            &raster::decode(file, bytes, kind, Orientation::Apply, limits)?,
+        )),
     }
 }
 
 pub(crate) fn decode_raw(
     file: &str,
     bytes: &[u8],
+    orientation: Orientation,
     limits: &Limits,
 ) -> Result<RawImage, ImageError> {
     match sniff(file, bytes)? {
@@ -139,8 +142,8 @@ pub(crate) fn decode_raw(
                 has_alpha: false,
             })
         }
-        kind @ (FileFormat::Png | FileFormat::Jpeg) => {
-            raster::decode(file, bytes, kind, raster::Orientation::Ignore, limits)
+        kind @ (FileFormat::Png | FileFormat::Jpeg | FileFormat::Tiff) => {
+            raster::decode(file, bytes, kind, orientation, limits)
         }
     }
 }

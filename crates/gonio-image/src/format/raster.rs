@@ -1,10 +1,11 @@
-//! PNG and JPEG, by the `image` crate's codecs.
+//! PNG, JPEG and TIFF, by the `image` crate's codecs.
 
 use super::FileFormat;
 use crate::contain::contain;
 use crate::{ImageError, Limits, RawData, RawImage};
 use image::codecs::jpeg::JpegDecoder;
 use image::codecs::png::{CompressionType, FilterType, PngDecoder, PngEncoder};
+use image::codecs::tiff::TiffDecoder;
 use image::{DynamicImage, ExtendedColorType, ImageDecoder, ImageEncoder};
 use std::io::Cursor;
 use std::path::Path;
@@ -18,7 +19,7 @@ pub(crate) enum Orientation {
     Ignore,
 }
 
-/// Decodes a PNG or JPEG to four channels.
+/// Decodes a PNG, JPEG or TIFF to four channels.
 pub(crate) fn decode(
     file: &str,
     bytes: &[u8],
@@ -29,12 +30,14 @@ pub(crate) fn decode(
     if kind == FileFormat::Jpeg {
         check_jpeg_is_whole(file, bytes)?;
     }
-    let outcome = contain(|| {
-        if kind == FileFormat::Jpeg {
-            JpegDecoder::new(Cursor::new(bytes))
-                .map_err(|e| translate(file, kind, limits, e))
-                .and_then(|d| decode_with(file, kind, d, orientation, limits))
-        } else {
+    let outcome = contain(|| match kind {
+        FileFormat::Jpeg => JpegDecoder::new(Cursor::new(bytes))
+            .map_err(|e| translate(file, kind, limits, e))
+            .and_then(|d| decode_with(file, kind, d, orientation, limits)),
+        FileFormat::Tiff => TiffDecoder::new(Cursor::new(bytes))
+            .map_err(|e| translate(file, kind, limits, e))
+            .and_then(|d| decode_with(file, kind, d, orientation, limits)),
+        _ => {
             let mut within = image::Limits::no_limits();
             within.max_alloc = Some(limits.max_bytes);
             PngDecoder::with_limits(Cursor::new(bytes), within)
@@ -62,6 +65,7 @@ fn decode_with(
     let (width, height) = decoder.dimensions();
     // Four samples a pixel, whatever the file has.
     let bytes_per_pixel = match decoder.color_type() {
+        c if c.bytes_per_pixel() / c.channel_count() > 2 => 16,
         c if c.bytes_per_pixel() / c.channel_count() > 1 => 8,
         _ => 4,
     };
@@ -91,7 +95,13 @@ fn to_raw(picture: DynamicImage) -> RawImage {
             | DynamicImage::ImageRgb16(_)
             | DynamicImage::ImageRgba16(_)
     );
-    let data = if deep {
+    let float = matches!(
+        picture,
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)
+    );
+    let data = if float {
+        RawData::F32(picture.into_rgba32f().pixels().map(|p| p.0).collect())
+    } else if deep {
         RawData::U16(picture.into_rgba16().pixels().map(|p| p.0).collect())
     } else {
         RawData::U8(picture.into_rgba8().pixels().map(|p| p.0).collect())
@@ -123,6 +133,7 @@ fn check_jpeg_is_whole(file: &str, bytes: &[u8]) -> Result<(), ImageError> {
 fn corrupt(file: &str, kind: FileFormat, found: String) -> ImageError {
     let (place, expected) = match kind {
         FileFormat::Jpeg => ("JPEG data", "a valid JPEG stream"),
+        FileFormat::Tiff => ("TIFF data", "a valid TIFF file"),
         _ => ("PNG data", "a valid PNG stream"),
     };
     ImageError::format(file, place, found, expected)
