@@ -177,29 +177,29 @@ impl Ball {
         }
     }
 
-    /// What the ball shows at a pixel; `None` outside its outline.
-    pub fn mirrored(&self, pixel: [f64; 2]) -> Option<Mirrored> {
-        let ray = self.projection.ray(pixel);
-        let normal = match self.projection {
+    /// The ball's unit outward normal at a pixel, in the camera's frame; `None` outside its outline.
+    pub fn normal(&self, pixel: [f64; 2]) -> Option<Vec3<f64>> {
+        match self.projection {
             Projection::Orthographic => {
                 let x = (pixel[0] - self.centre[0]) / self.radius;
                 let y = (self.centre[1] - pixel[1]) / self.radius;
                 let z2 = 1.0 - x * x - y * y;
-                if z2.is_nan() || z2 < 0.0 {
-                    return None;
-                }
-                Vec3::new(x, y, z2.sqrt())
+                (z2 >= 0.0).then(|| Vec3::new(x, y, z2.sqrt()))
             }
             Projection::Perspective { .. } => {
+                let ray = self.projection.ray(pixel);
                 let ball = -self.axis * self.distance;
                 let along = ray.dot(ball);
                 let h2 = along * along - (self.distance * self.distance - 1.0);
-                if h2.is_nan() || h2 < 0.0 || along <= 0.0 {
-                    return None;
-                }
-                ray * (along - h2.sqrt()) - ball
+                (h2 >= 0.0 && along > 0.0).then(|| ray * (along - h2.sqrt()) - ball)
             }
-        };
+        }
+    }
+
+    /// What the ball shows at a pixel; `None` outside its outline.
+    pub fn mirrored(&self, pixel: [f64; 2]) -> Option<Mirrored> {
+        let normal = self.normal(pixel)?;
+        let ray = self.projection.ray(pixel);
         let k = ray.dot(normal);
         Some(Mirrored {
             direction: (ray - normal * (2.0 * k)).normalize(),
