@@ -112,7 +112,7 @@ pub enum CaptureError {
 impl CaptureError {
     pub(crate) fn parameter(
         name: &'static str,
-        found: impl ToString,
+        found: impl std::fmt::Display,
         expected: &'static str,
     ) -> Self {
         Self::Parameter {

@@ -128,7 +128,8 @@ mod tests {
             }
         }
         let filled = fill(&mut image, &confidence);
-        assert!(filled > 300);
+        // A cap of 5 % of the sphere, on the equator, where texels are largest.
+        assert!(filled > 200, "{filled}");
         for k in 0..128 * 64 {
             let found = f64::from(image.pixels[k][0]);
             assert!(

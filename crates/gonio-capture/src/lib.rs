@@ -1,7 +1,10 @@
 //! Environment maps from photographs of a mirrored ball (T21).
 
 pub mod ball;
+pub mod blend;
+mod capture;
 mod error;
+mod explain;
 pub mod fill;
 pub mod outline;
 pub mod panorama;
@@ -10,10 +13,13 @@ mod radiance;
 mod reflectance;
 pub mod register;
 pub mod response;
+pub mod restore;
 mod rotation;
+pub mod simulate;
 mod solve;
 
 pub use ball::{Ball, Projection};
+pub use capture::{Capture, KnownLight, Options, ViewFound, capture};
 pub use error::CaptureError;
 pub use outline::{Lens, Outline};
 pub use panorama::{Panorama, Unwrap};

@@ -383,7 +383,8 @@ pub(crate) mod tests {
         let found = register(&reference, &view, ["a", "b"]).unwrap();
         let error = found.rotation.inverse().then_inner(turn).angle();
         assert!(error < 2.5e-4, "{error} {found:?}");
-        assert!(found.correlation > 0.95);
+        // Blobs as narrow as 4° on texels of 2.8°: the details of the two samplings differ, but are the same blobs.
+        assert!(found.correlation > 0.8, "{found:?}");
     }
 
     #[test]

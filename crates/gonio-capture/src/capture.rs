@@ -1,0 +1,556 @@
+//! [`capture`], the whole way: photographs in, an environment with what is known about it out.
+
+use crate::ball::Projection;
+use crate::blend::{self, View};
+use crate::explain::Explain;
+use crate::outline::{self, Lens, Outline};
+use crate::panorama::{Panorama, Unwrap};
+use crate::photo::Photo;
+use crate::register::{self, Registration};
+use crate::response::{Response, ResponseChoice};
+use crate::restore::{self, Restored};
+use crate::{BallMaterial, CaptureError, Radiance, Rotation, fill};
+use gonio_image::{ChannelData, Image, ImageError, Layers};
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+/// What clipped light is restored from.
+#[derive(Debug, Clone)]
+pub enum KnownLight {
+    /// Photographs of a grey ball, exposures of one view, and where it stands if that is known.
+    GreyBall(Vec<Photo>, Option<[f64; 3]>),
+    /// Illuminance \[lx] on level ground, > 0.
+    Lux(f64),
+}
+
+/// How photographs become an environment.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Viewpoints. The photographs are those of the first, then those of the second, …: equally many of each.
+    pub views: usize,
+    /// Relative exposures: one a photograph, or one a photograph of the first view, which repeat. From EXIF if nothing.
+    pub exposures: Option<Vec<f64>>,
+    /// The response curve.
+    pub response: ResponseChoice,
+    /// What is known of the camera. `Unknown` takes EXIF's focal length, if there is one.
+    pub lens: Lens,
+    /// Circles \[pixels: x, y, radius]: none (then they are found) or one a view.
+    pub balls: Vec<[f64; 3]>,
+    /// What the ball is made of.
+    pub material: BallMaterial,
+    /// Rows of the panorama, which is twice as wide: 8 to 16,384.
+    pub height: usize,
+    /// Width \[pixels] of the outline's edge that is left out.
+    pub margin: f64,
+    /// Half-angle \[°] of the cone that shows the camera.
+    pub camera_deg: f64,
+    /// Whether texels that nobody saw are filled.
+    pub fill: bool,
+    /// What clipped light is restored from.
+    pub known_light: Option<KnownLight>,
+    /// A folder for a picture of every step.
+    pub explain: Option<PathBuf>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            views: 1,
+            exposures: None,
+            response: ResponseChoice::Auto,
+            lens: Lens::Unknown,
+            balls: Vec::new(),
+            material: BallMaterial::Chrome,
+            height: 512,
+            margin: 1.5,
+            camera_deg: 6.0,
+            fill: false,
+            known_light: None,
+            explain: None,
+        }
+    }
+}
+
+/// A viewpoint, as it was understood.
+#[derive(Debug, Clone)]
+pub struct ViewFound {
+    /// Its first photograph.
+    pub name: String,
+    /// The ball.
+    pub outline: Outline,
+    /// How it is turned against the first view; `None` for the first.
+    pub registration: Option<Registration>,
+    /// Factors that its channels were multiplied by.
+    pub gain: [f64; 3],
+}
+
+/// An environment, captured.
+#[derive(Debug, Clone)]
+pub struct Capture {
+    /// The panorama, in the frame of the first view's camera: it stands at +z, at the picture's left and right edge.
+    pub panorama: Panorama,
+    /// The viewpoints.
+    pub views: Vec<ViewFound>,
+    /// The response curve.
+    pub response: Response,
+    /// What was put back.
+    pub restored: Option<Restored>,
+    /// Texels that were filled.
+    pub filled: usize,
+    /// Choices that were made for the user, to be told.
+    pub notes: Vec<String>,
+    metadata: Vec<(String, String)>,
+}
+
+/// Makes an environment of photographs of a mirrored ball. `progress` is told each step and how far the whole is, 0 to 1.
+///
+/// The same photographs give the same bits.
+///
+/// # Errors
+/// Every variant of [`CaptureError`].
+pub fn capture(
+    photos: &[Photo],
+    options: &Options,
+    progress: &mut dyn FnMut(&str, f64),
+) -> Result<Capture, CaptureError> {
+    check(photos, options)?;
+    let mut notes = Vec::new();
+    let mut explain = Explain::into_folder(options.explain.as_deref())?;
+    let each = photos.len() / options.views;
+    let exposures = exposures(photos, options, each)?;
+    progress("response curve", 0.05);
+    let response = response(
+        &photos[..each],
+        &exposures[..each],
+        options.response,
+        &mut notes,
+    )?;
+    explain.response(&response)?;
+
+    let lens = lens(&photos[0], options.lens, &mut notes);
+    let mut found: Vec<(Radiance, Outline, &str)> = Vec::new();
+    for v in 0..options.views {
+        let step = |part: f64| 0.1 + 0.5 * (v as f64 + part) / options.views as f64;
+        let range = v * each..(v + 1) * each;
+        let name = &photos[range.start].name;
+        progress("merging exposures", step(0.0));
+        let radiance = Radiance::merge(&photos[range.clone()], &exposures[range], &response)?;
+        explain.radiance(v + 1, &radiance)?;
+        progress("finding the ball", step(0.5));
+        let size = [radiance.image.width, radiance.image.height];
+        let outline = match options.balls.get(v) {
+            Some(circle) => outline::given(*circle, lens, size)?,
+            None => outline::find(&radiance.image, lens, name)?,
+        };
+        explain.outline(v + 1, &radiance.image, &outline)?;
+        found.push((radiance, outline, name));
+    }
+
+    progress("registering the views", 0.6);
+    let unwrap = |rotation| Unwrap {
+        height: options.height,
+        material: options.material,
+        margin: options.margin,
+        rotation,
+        camera_deg: options.camera_deg,
+    };
+    let small = |view: &(Radiance, Outline, &str)| {
+        let how = Unwrap {
+            height: options.height.min(256),
+            ..unwrap(Rotation::IDENTITY)
+        };
+        Panorama::unwrap(&view.0, &view.1.ball, &how)
+    };
+    let mut registrations = vec![None];
+    if found.len() > 1 {
+        let reference = small(&found[0]);
+        for view in &found[1..] {
+            let names = [found[0].2, view.2];
+            registrations.push(Some(register::register(&reference, &small(view), names)?));
+        }
+    }
+    progress("unwrapping", 0.75);
+    let views: Vec<View> = found
+        .iter()
+        .zip(&registrations)
+        .map(|((radiance, outline, _), registration)| {
+            let rotation = registration.map_or(Rotation::IDENTITY, |r| r.rotation);
+            View {
+                panorama: Panorama::unwrap(radiance, &outline.ball, &unwrap(rotation)),
+                towards_camera: rotation.apply(outline.ball.towards_camera()),
+            }
+        })
+        .collect();
+    for (v, view) in views.iter().enumerate() {
+        explain.panorama(&format!("view{}-panorama", v + 1), &view.panorama.image)?;
+        explain.confidence(&format!("view{}-confidence", v + 1), &view.panorama)?;
+    }
+    progress("merging the views", 0.85);
+    let before: Vec<Panorama> = if options.explain.is_some() && views.len() > 1 {
+        views.iter().map(|v| v.panorama.clone()).collect()
+    } else {
+        Vec::new()
+    };
+    let merged = blend::blend(views);
+    for (v, mut p) in before.iter().cloned().enumerate().skip(1) {
+        for pixel in &mut p.image.pixels {
+            for c in 0..3 {
+                pixel[c] *= merged.gains[v][c] as f32;
+            }
+        }
+        explain.difference(&format!("view{}-difference", v + 1), &before[0], &p)?;
+    }
+    let mut panorama = merged.panorama;
+    explain.panorama("merged", &panorama.image)?;
+    explain.confidence("confidence", &panorama)?;
+
+    let mut filled = 0;
+    // Light is missing from irradiance if holes stay black: it is restored with them filled.
+    let mut whole = panorama.image.clone();
+    if options.fill || options.known_light.is_some() {
+        progress("filling what nobody saw", 0.9);
+        filled = fill::fill(&mut whole, &panorama.confidence);
+    }
+    let restored = match &options.known_light {
+        None => None,
+        Some(light) => restore(
+            light,
+            &mut whole,
+            &panorama,
+            &response,
+            &found[0].1,
+            photos,
+            options,
+            lens,
+        )?,
+    };
+    if options.fill || options.known_light.is_none() {
+        panorama.image = if options.fill { whole } else { panorama.image };
+    } else {
+        for (k, p) in whole.pixels.iter().enumerate() {
+            let seen = panorama.confidence[k] >= fill::LEAST_CONFIDENCE
+                || panorama.image.pixels[k][1] > 0.0;
+            panorama.image.pixels[k] = if seen { *p } else { [0.0; 3] };
+        }
+        filled = 0;
+    }
+    explain.panorama("panorama", &panorama.image)?;
+    progress("done", 1.0);
+
+    let views = found
+        .into_iter()
+        .zip(registrations)
+        .zip(&merged.gains)
+        .map(|(((_, outline, name), registration), gain)| ViewFound {
+            name: name.to_owned(),
+            outline,
+            registration,
+            gain: *gain,
+        })
+        .collect();
+    let mut capture = Capture {
+        panorama,
+        views,
+        response,
+        restored,
+        filled,
+        notes,
+        metadata: Vec::new(),
+    };
+    capture.metadata = capture.describe(options);
+    Ok(capture)
+}
+
+fn check(photos: &[Photo], options: &Options) -> Result<(), CaptureError> {
+    let wrong =
+        |name, found: &dyn Display, expected| CaptureError::parameter(name, found, expected);
+    if options.views == 0 || photos.is_empty() || !photos.len().is_multiple_of(options.views) {
+        return Err(wrong(
+            "views",
+            &format!("{} of {} photograph(s)", options.views, photos.len()),
+            "a number that divides the number of photographs: equally many exposures of each view",
+        ));
+    }
+    if !options.balls.is_empty() && options.balls.len() != options.views {
+        return Err(wrong(
+            "balls",
+            &options.balls.len(),
+            "one circle for each view",
+        ));
+    }
+    if !(8..=16_384).contains(&options.height) {
+        return Err(wrong(
+            "height of the panorama",
+            &options.height,
+            "8 to 16384 rows",
+        ));
+    }
+    if !(options.margin >= 0.0 && options.margin < 1e4) {
+        return Err(wrong("margin", &options.margin, "0 or more pixels"));
+    }
+    if !(options.camera_deg >= 0.0 && options.camera_deg < 90.0) {
+        return Err(wrong(
+            "angle of the camera",
+            &options.camera_deg,
+            "0° or more and less than 90°",
+        ));
+    }
+    if let Some(KnownLight::Lux(lux)) = options.known_light
+        && !(lux > 0.0 && lux.is_finite())
+    {
+        return Err(wrong("illuminance", &lux, "a positive number of lux"));
+    }
+    Ok(())
+}
+
+/// The exposure of each photograph.
+fn exposures(photos: &[Photo], options: &Options, each: usize) -> Result<Vec<f64>, CaptureError> {
+    let found: Vec<f64> = match &options.exposures {
+        Some(given) if given.len() == photos.len() => given.clone(),
+        Some(given) if given.len() == each => {
+            given.iter().copied().cycle().take(photos.len()).collect()
+        }
+        Some(given) => {
+            return Err(CaptureError::parameter(
+                "exposures",
+                format!("{} of them", given.len()),
+                "one for each photograph, or one for each photograph of the first view",
+            ));
+        }
+        // A single exposure needs no number, but says how bright the picture is if it has one.
+        None if each == 1 && photos.iter().any(|p| p.exif.exposure().is_none()) => {
+            vec![1.0; photos.len()]
+        }
+        None => photos
+            .iter()
+            .map(|p| {
+                p.exif.exposure().ok_or_else(|| CaptureError::NoExposure {
+                    file: p.name.clone(),
+                    missing: "the exposure time",
+                })
+            })
+            .collect::<Result<_, _>>()?,
+    };
+    if let Some(bad) = found.iter().find(|e| !(**e > 0.0 && e.is_finite())) {
+        return Err(CaptureError::parameter(
+            "exposure",
+            bad,
+            "a positive number of seconds",
+        ));
+    }
+    for v in 0..options.views {
+        let range = v * each..(v + 1) * each;
+        for i in range.clone() {
+            for j in i + 1..range.end {
+                if (found[i] / found[j] - 1.0).abs() < 0.05 {
+                    return Err(CaptureError::EqualExposures {
+                        first: photos[i].name.clone(),
+                        second: photos[j].name.clone(),
+                        exposure: seconds(found[i]),
+                    });
+                }
+            }
+        }
+    }
+    Ok(found)
+}
+
+fn seconds(t: f64) -> String {
+    if t < 0.3 {
+        format!("1/{:.0} s", 1.0 / t)
+    } else {
+        format!("{t} s")
+    }
+}
+
+fn response(
+    photos: &[Photo],
+    exposures: &[f64],
+    choice: ResponseChoice,
+    notes: &mut Vec<String>,
+) -> Result<Response, CaptureError> {
+    if !photos[0].is_coded() {
+        return Ok(Response::linear());
+    }
+    match choice {
+        ResponseChoice::Linear => Ok(Response::linear()),
+        ResponseChoice::Srgb => Ok(Response::srgb()),
+        ResponseChoice::Auto if photos.len() == 1 => {
+            notes.push(
+                "one exposure doesn't tell the camera's response: sRGB's curve is assumed".into(),
+            );
+            Ok(Response::srgb())
+        }
+        ResponseChoice::Recover if photos.len() == 1 => Err(CaptureError::Response {
+            reason: "one exposure doesn't tell it".into(),
+        }),
+        ResponseChoice::Auto | ResponseChoice::Recover => Response::recover(photos, exposures),
+    }
+}
+
+/// The lens that was given, else that of EXIF, else unknown.
+fn lens(photo: &Photo, given: Lens, notes: &mut Vec<String>) -> Lens {
+    if given != Lens::Unknown {
+        return given;
+    }
+    if let Some(mm) = photo.exif.focal_35mm {
+        // The same diagonal field of view as 36 mm × 24 mm.
+        let (w, h) = (photo.picture.width as f64, photo.picture.height as f64);
+        let focal = mm / 36.0_f64.hypot(24.0) * w.hypot(h);
+        return Lens::FieldOfView(2.0 * (0.5 * w).atan2(focal));
+    }
+    notes.push(
+        "the photograph doesn't tell its field of view: the camera is taken as far away (--fov, --distance)".into(),
+    );
+    Lens::Unknown
+}
+
+#[allow(
+    clippy::too_many_arguments,
+    reason = "one call; a struct would only rename them"
+)]
+fn restore(
+    light: &KnownLight,
+    image: &mut Image,
+    panorama: &Panorama,
+    response: &Response,
+    mirrored: &Outline,
+    photos: &[Photo],
+    options: &Options,
+    lens: Lens,
+) -> Result<Option<Restored>, CaptureError> {
+    match light {
+        KnownLight::Lux(lux) => {
+            // Exposures count as they stand in EXIF only if they were read from there, and whole.
+            let known =
+                options.exposures.is_none() && photos[0].exif.saturation_luminance().is_some();
+            // L = 120 N²/(S t) = 1.2 / H for the exposure H of `Exif::exposure`.
+            restore::by_illuminance(image, &panorama.clipped, *lux, known.then_some(1.2))
+        }
+        KnownLight::GreyBall(grey, circle) => {
+            let exposures = grey
+                .iter()
+                .map(|p| p.exif.exposure())
+                .collect::<Option<Vec<f64>>>()
+                .unwrap_or_else(|| vec![1.0; grey.len()]);
+            let radiance = Radiance::merge(grey, &exposures, response)?;
+            let size = [radiance.image.width, radiance.image.height];
+            let ball = match circle {
+                Some(circle) => outline::given(*circle, lens, size)?.ball,
+                None => match outline::find(&radiance.image, lens, &grey[0].name) {
+                    Ok(found) => found.ball,
+                    // The shadow side may melt into the ground: where the mirrored ball stood in a picture of the same size.
+                    Err(CaptureError::NoBall { .. })
+                        if size == [photos[0].picture.width, photos[0].picture.height] =>
+                    {
+                        mirrored.ball
+                    }
+                    Err(e) => return Err(e),
+                },
+            };
+            restore::by_grey_ball(image, &panorama.clipped, &radiance, &ball).map(Some)
+        }
+    }
+}
+
+impl Capture {
+    /// What was found out, as names and values.
+    pub fn metadata(&self) -> &[(String, String)] {
+        &self.metadata
+    }
+
+    fn describe(&self, options: &Options) -> Vec<(String, String)> {
+        let mut all: Vec<(String, String)> = Vec::new();
+        let mut put = |name: String, value: String| all.push((name, value));
+        put("layout".into(), "lat-long".into());
+        put(
+            "capture.response".into(),
+            self.response.origin().to_string(),
+        );
+        put("capture.ball-material".into(), options.material.to_string());
+        for (v, view) in self.views.iter().enumerate() {
+            let name = |what: &str| format!("capture.view{}.{what}", v + 1);
+            let ball = &view.outline.ball;
+            let [x, y] = ball.centre();
+            put(name("photo"), view.name.clone());
+            put(name("ball"), format!("{x:.3},{y:.3},{:.3}", ball.radius()));
+            put(name("outline-rms-px"), format!("{:.3}", view.outline.rms));
+            put(
+                name("outline-coverage"),
+                format!("{:.3}", view.outline.coverage),
+            );
+            match ball.projection() {
+                Projection::Orthographic => put(name("projection"), "orthographic".into()),
+                Projection::Perspective { focal, .. } => {
+                    put(name("focal-length-px"), format!("{focal:.2}"));
+                    put(name("distance-radii"), format!("{:.4}", ball.distance()));
+                }
+            }
+            if let Some(r) = view.registration {
+                let [yaw, pitch, roll] = r.rotation.angles().map(f64::to_degrees);
+                put(
+                    name("yaw-pitch-roll-deg"),
+                    format!("{yaw:.4},{pitch:.4},{roll:.4}"),
+                );
+                put(name("correlation"), format!("{:.4}", r.correlation));
+                let [r, g, b] = view.gain;
+                put(name("gain"), format!("{r:.5},{g:.5},{b:.5}"));
+            }
+        }
+        if let Some(r) = &self.restored {
+            let d = r.direction;
+            put(
+                "capture.restored.radiance".into(),
+                format!("{:?}", r.radiance),
+            );
+            put(
+                "capture.restored.direction".into(),
+                format!("{:.5},{:.5},{:.5}", d.x, d.y, d.z),
+            );
+            put(
+                "capture.restored.solid-angle-sr".into(),
+                format!("{:.6}", r.solid_angle),
+            );
+        }
+        if matches!(options.known_light, Some(KnownLight::Lux(_))) {
+            put("luminance-unit".into(), "cd m-2".into());
+        }
+        put("capture.filled-texels".into(), self.filled.to_string());
+        all
+    }
+
+    /// The layers of an EXR: R, G, B; `confidence.Y`; `uncertainty.Y`, the luminance's standard deviation; `clipped.Y`.
+    ///
+    /// # Errors
+    /// None in practice: the layers are of one size and have different names.
+    pub fn layers(&self) -> Result<Layers, ImageError> {
+        let p = &self.panorama;
+        let mut layers = Layers::from_image(&p.image);
+        let uncertainty = p
+            .image
+            .pixels
+            .iter()
+            .zip(&p.sigma)
+            .map(|(p, s)| s * (0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]))
+            .collect();
+        for (name, samples) in [
+            ("confidence.Y", p.confidence.clone()),
+            ("uncertainty.Y", uncertainty),
+            ("clipped.Y", p.clipped.clone()),
+        ] {
+            layers.push(name, ChannelData::Float(samples))?;
+        }
+        for (name, value) in &self.metadata {
+            layers.set_metadata(name, value);
+        }
+        Ok(layers)
+    }
+
+    /// Writes [`Capture::layers`].
+    ///
+    /// # Errors
+    /// [`CaptureError::Image`] with nothing half-written.
+    pub fn write(&self, path: &Path) -> Result<(), CaptureError> {
+        Ok(self.layers()?.write_exr(path)?)
+    }
+}
