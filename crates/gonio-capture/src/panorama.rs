@@ -3,8 +3,8 @@
 //! Texel (i, j) shows the mean radiance of its directions, each looked up where the ball shows it and divided by the ball's
 //! reflectance there. Equal steps of direction are unequal steps of the photograph: near the rim a radian is few pixels
 //! towards the centre and many around it, dω/dA = 1/(radial · tangential) with the two scales of
-//! [`Place`](crate::ball::Place). So a texel takes as many samples along each of its sides as it covers pixels in the
-//! longer direction: none is skipped, and flux is conserved.
+//! [`Place`](crate::ball::Place). So a texel takes as many samples along each of its sides as it takes to touch every pixel
+//! in the longer direction: none is skipped, and flux is conserved.
 
 use crate::ball::Ball;
 use crate::{BallMaterial, Radiance, Rotation};
@@ -16,6 +16,8 @@ use std::f64::consts::PI;
 
 /// Samples along a side of a texel at most.
 const MOST_SAMPLES: usize = 24;
+/// Pixels between samples: less than the two that a bilinear look-up spans.
+const SPACING: f64 = 1.5;
 
 /// How a photograph is unwrapped.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -119,7 +121,7 @@ fn texel(radiance: &Radiance, ball: &Ball, how: &Unwrap, i: usize, j: usize) -> 
     // Just beside the blind cone the middle may be in it while a corner isn't: then as many samples as there may be.
     let (samples, sharp, pixels) = match ball.place(middle) {
         Some(p) => {
-            let longer = (p.radial.max(p.tangential) * side).ceil();
+            let longer = (p.radial.max(p.tangential) * side / SPACING).ceil();
             let shorter = p.radial.min(p.tangential) * side;
             let n = if longer.is_finite() {
                 longer as usize

@@ -1,10 +1,12 @@
 //! The ball's outline in a photograph.
 //!
-//! First the circle of a small picture whose circumference is an edge nearly everywhere ([`search`]). Then, in the full
-//! picture, the place of the steepest change along each of many normals of the outline, to a fraction of a pixel; and the
-//! cone of rays (an ellipse; a circle for an orthographic camera) through these places, by Gauss–Newton with Tukey's weights.
+//! First the circle of a small picture whose circumference is an edge nearly everywhere ([`search`]). Near the rim a ball
+//! squeezes everything into lines that run along it, so that circle may be one of these. In the full picture the edges along
+//! many normals tell ([`rim`]): the outline is the outermost of the curves that nearly all normals have an edge on. Last, the
+//! cone of rays (an ellipse; a circle for an orthographic camera) through these edges, by Gauss–Newton with Tukey's weights.
 
 mod edges;
+mod rim;
 mod search;
 
 use crate::ball::{Ball, Projection};
@@ -20,8 +22,6 @@ const SEARCHED: usize = 420;
 const MOST_EDGES: usize = 9000;
 /// The least share of a ball's outline that is an edge, beyond chance.
 pub const LEAST_COVERAGE: f64 = 0.45;
-/// Normals along which the outline is sought.
-const NORMALS: usize = 720;
 
 /// What is known of the camera besides the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,22 +49,25 @@ pub struct Outline {
     pub places: Vec<([f64; 2], f64)>,
 }
 
-/// Logarithm of the luminance above a floor, so that shadows are not all noise.
+/// Luminance above a floor, so that the logarithm of shadows is not all noise.
 fn brightness(image: &Image) -> Plane {
-    let luminance: Vec<f32> = image
+    let mut values: Vec<f32> = image
         .pixels
         .iter()
         .map(|p| 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2])
         .collect();
-    let stride = (luminance.len() / 10_000).max(1);
-    let mut some: Vec<f32> = luminance.iter().copied().step_by(stride).collect();
+    let stride = (values.len() / 10_000).max(1);
+    let mut some: Vec<f32> = values.iter().copied().step_by(stride).collect();
     let middle = some.len() / 2;
     let (_, median, _) = some.select_nth_unstable_by(middle, f32::total_cmp);
     let floor = (0.03 * *median).max(1e-20);
+    for v in &mut values {
+        *v += floor;
+    }
     Plane {
         width: image.width,
         height: image.height,
-        values: luminance.iter().map(|l| Real::ln(l + floor)).collect(),
+        values,
     }
 }
 
@@ -81,11 +84,10 @@ pub fn find(image: &Image, lens: Lens, file: &str) -> Result<Outline, CaptureErr
     };
     let plane = brightness(image);
     let shrink = size[0].max(size[1]).div_ceil(SEARCHED);
-    let small = if shrink > 1 {
-        plane.shrunk(shrink)
-    } else {
-        plane.clone()
-    };
+    let mut small = plane.shrunk(shrink);
+    for v in &mut small.values {
+        *v = Real::ln(*v);
+    }
     let found = search::find(
         &edges::find(&small, MOST_EDGES),
         [small.width, small.height],
@@ -99,31 +101,21 @@ pub fn find(image: &Image, lens: Lens, file: &str) -> Result<Outline, CaptureErr
     let k = shrink as f64;
     let centre = circle.centre.map(|c| c * k);
     let (mut ball, _) = of_circle(lens, size, [centre[0], centre[1], circle.radius * k])?;
-    let mut places = Vec::new();
-    let mut reach = 2.5 * k;
+    let mut places = rim::outermost(&plane, &ball, 2.0 * k);
     let mut fitted = None;
-    for _ in 0..6 {
-        let points = steepest(&plane, &ball, reach);
-        if points.len() < NORMALS / 4 {
-            return Err(none(points.len() as f64 / NORMALS as f64));
-        }
-        let Some(fit) = fit(ball, &points) else { break };
+    for _ in 0..5 {
+        let Some(fit) = fit(ball, &places) else { break };
         ball = placed(lens, size, fit.ball);
-        places = points
-            .iter()
-            .map(|p| p.0)
-            .zip(fit.weights.iter().copied())
-            .collect();
-        fitted = Some((fit.rms, fit.sigma));
-        reach = (0.6 * reach).max(3.0);
+        fitted = Some((fit, places));
+        places = rim::nearest(&plane, &ball);
     }
-    let (rms, sigma) = fitted.ok_or_else(|| none(coverage))?;
+    let (fit, places) = fitted.ok_or_else(|| none(coverage))?;
     Ok(Outline {
         ball,
         coverage,
-        rms,
-        sigma,
-        places,
+        rms: fit.rms,
+        sigma: fit.sigma,
+        places: places.into_iter().zip(fit.weights).collect(),
     })
 }
 
@@ -181,10 +173,9 @@ fn of_circle(
         _ => {}
     }
     let mut ball = placed(lens, size, Ball::new(Projection::Orthographic, [x, y], r));
-    let weighted: Vec<([f64; 2], f64)> = points.iter().map(|p| (*p, 1.0)).collect();
     // The focal length that a distance asks for depends on the radius, and that on the ball's place in the picture.
     for _ in 0..8 {
-        let Some(fit) = fit(ball, &weighted) else {
+        let Some(fit) = fit(ball, &points) else {
             break;
         };
         ball = placed(lens, size, fit.ball);
@@ -208,58 +199,6 @@ fn placed(lens: Lens, size: [usize; 2], ball: Ball) -> Ball {
     )
 }
 
-/// Along each normal the place of the steepest change within `reach` pixels, with the steepness.
-fn steepest(plane: &Plane, ball: &Ball, reach: f64) -> Vec<([f64; 2], f64)> {
-    // Ten steps each way; the derivative over two steps.
-    let step = (reach / 10.0).max(0.35);
-    let half = (reach / step).ceil() as i32 + 1;
-    let centre = ball.centre();
-    let mut found = Vec::with_capacity(NORMALS);
-    for k in 0..NORMALS {
-        let p = ball.outline(TAU * k as f64 / NORMALS as f64);
-        let out = [p[0] - centre[0], p[1] - centre[1]];
-        let length = out[0].hypot(out[1]);
-        let n = out.map(|c| c / length);
-        let margin = reach + 2.0;
-        let inside = p[0] > margin
-            && p[1] > margin
-            && p[0] < plane.width as f64 - margin
-            && p[1] < plane.height as f64 - margin;
-        if !inside {
-            continue;
-        }
-        // The mean over a short piece of the outline: less noise.
-        let value = |i: i32| {
-            let s = f64::from(i) * step;
-            (-1..=1)
-                .map(|t| {
-                    let t = f64::from(t) * step;
-                    plane.at(p[0] + s * n[0] - t * n[1], p[1] + s * n[1] + t * n[0])
-                })
-                .sum::<f64>()
-                / 3.0
-        };
-        let profile: Vec<f64> = (-half - 1..=half + 1).map(value).collect();
-        let slope: Vec<f64> = profile.windows(3).map(|w| (w[2] - w[0]).abs()).collect();
-        let Some(best) = (1..slope.len() - 1).max_by(|a, b| slope[*a].total_cmp(&slope[*b])) else {
-            continue;
-        };
-        let (a, b, c) = (slope[best - 1], slope[best], slope[best + 1]);
-        if b < 1e-3 || b < a || b < c {
-            continue;
-        }
-        let bend = a - 2.0 * b + c;
-        let shift = if bend < 0.0 {
-            0.5 * (a - c) / bend
-        } else {
-            0.0
-        };
-        let s = (best as f64 - f64::from(half) + shift) * step;
-        found.push(([p[0] + s * n[0], p[1] + s * n[1]], b));
-    }
-    found
-}
-
 struct Fit {
     ball: Ball,
     weights: Vec<f64>,
@@ -268,18 +207,21 @@ struct Fit {
 }
 
 /// Minimises Σ ρ(distance from the outline) over centre and radius, with Tukey's biweight ρ at 4.685 times the spread.
-fn fit(mut ball: Ball, points: &[([f64; 2], f64)]) -> Option<Fit> {
+fn fit(mut ball: Ball, points: &[[f64; 2]]) -> Option<Fit> {
+    if points.len() < 16 {
+        return None;
+    }
     let mut weights = vec![1.0; points.len()];
     let mut last = None;
     for _ in 0..25 {
-        let residuals: Vec<f64> = points.iter().map(|(p, _)| ball.outside(*p)).collect();
+        let residuals: Vec<f64> = points.iter().map(|p| ball.outside(*p)).collect();
         let mut sizes: Vec<f64> = residuals.iter().map(|r| r.abs()).collect();
         sizes.sort_by(f64::total_cmp);
         // The median of |r| of a normal distribution is 0.6745 σ. Never below a hundredth of a pixel.
         let spread = (sizes[sizes.len() / 2] / 0.6745).max(0.01);
         let mut normal = solve::Normal::<3>::new();
         let (mut sum, mut total) = (0.0, 0.0);
-        for (((p, _), r), w) in points.iter().zip(&residuals).zip(&mut weights) {
+        for ((p, r), w) in points.iter().zip(&residuals).zip(&mut weights) {
             let u = r / (4.685 * spread);
             *w = if u.abs() < 1.0 {
                 (1.0 - u * u).sq()
