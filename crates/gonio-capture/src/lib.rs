@@ -1,4 +1,20 @@
-//! Environment maps from photographs of a mirrored ball (T21).
+//! Environment maps from photographs of a mirrored ball (T21; Debevec 1998).
+//!
+//! | step | module |
+//! |---|---|
+//! | a photograph and its EXIF | [`Photo`] |
+//! | codes to exposure | [`response`] |
+//! | exposures to radiance, with uncertainty | [`Radiance`] |
+//! | the ball's outline | [`outline`] |
+//! | pixels to directions and back, from a finite distance | [`ball`] |
+//! | the ball's own reflectance | [`BallMaterial`] |
+//! | unwrapping | [`panorama`] |
+//! | the rotation between viewpoints | [`register`] |
+//! | several viewpoints to one panorama | [`mod@blend`] |
+//! | holes filled | [`mod@fill`] |
+//! | clipped light put back | [`restore`] |
+//! | all of it | [`fn@capture`] |
+//! | photographs that were never taken, as evidence | [`simulate`] |
 
 pub mod ball;
 pub mod blend;

@@ -2,6 +2,7 @@
 
 use super::terminal::{quote, say};
 use gonio_brdf::BrdfError;
+use gonio_capture::CaptureError;
 use gonio_env::EnvError;
 use gonio_exec::{ExecError, Fault};
 use gonio_image::ImageError;
@@ -148,6 +149,24 @@ impl From<EnvError> for Failure {
             },
             _ => Self::input(message)
                 .with_help(help.unwrap_or("'gonio env info --help' says what is read".into())),
+        }
+    }
+}
+
+impl From<CaptureError> for Failure {
+    fn from(error: CaptureError) -> Self {
+        let message = chain(&error);
+        let help = error.help();
+        match error {
+            CaptureError::Image(e) => e.into(),
+            CaptureError::Environment(e) => e.into(),
+            CaptureError::Parameter { .. } => {
+                Self::usage(message).with_help("'gonio env capture --help' explains each option")
+            }
+            _ => Self {
+                help: help.map(str::to_owned),
+                ..Self::input(message)
+            },
         }
     }
 }

@@ -1,5 +1,6 @@
 //! `gonio env`: one file a subcommand.
 
+mod capture;
 mod convert;
 mod info;
 
@@ -10,6 +11,8 @@ use super::failure::Failure;
     after_help = "Examples:\n  gonio env info sunset.hdr\n  gonio env convert sunset.hdr sunset.ktx2 --to cube --size 256 --mips"
 )]
 pub(super) enum Command {
+    /// Photographs of a mirrored ball to a panorama with what is known about each texel
+    Capture(Box<capture::Arguments>),
     /// Layout, size, mean radiance, irradiance on six axes, peak, dynamic range, faults
     Info(info::Arguments),
     /// Another layout, size, orientation or file format, with the flux kept
@@ -18,6 +21,7 @@ pub(super) enum Command {
 
 pub(super) fn run(command: Command) -> Result<(), Failure> {
     match command {
+        Command::Capture(arguments) => capture::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Convert(arguments) => convert::run(*arguments),
     }
