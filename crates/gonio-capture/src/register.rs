@@ -18,6 +18,8 @@ pub const LEAST_CORRELATION: f64 = 0.35;
 const ROTATIONS: usize = 12_000;
 /// Of these so many are refined.
 const CANDIDATES: usize = 16;
+/// And of these so many to the end.
+const FINALISTS: usize = 4;
 /// Rows of the levels: ranked, refined, judged.
 const RANKED: usize = 16;
 const JUDGED: usize = 64;
@@ -220,18 +222,13 @@ pub fn register(
         }
     }
     let judged = a.iter().position(|l| l.h >= JUDGED).unwrap_or(a.len() - 1);
-    let (da, db) = (a[judged].details(), b[judged].details());
-    let best = chosen
-        .into_par_iter()
-        .map(|mut r| {
-            for level in 0..=judged {
-                r = refine(&a[level], &b[level], r).map_or(r, |f| f.0);
-            }
-            (correlation(&da, &db, r), r)
-        })
-        .collect::<Vec<_>>()
-        .into_iter()
-        .reduce(|p, q| if q.0 > p.0 { q } else { p });
+    // All of them through the coarse levels, the best few of these to the level that judges.
+    let mut candidates = refined(&a, &b, chosen, 0..=judged.saturating_sub(1));
+    candidates.truncate(FINALISTS);
+    let candidates = candidates.into_iter().map(|c| c.1).collect();
+    let best = refined(&a, &b, candidates, judged..=judged)
+        .first()
+        .copied();
     let (correlation, mut rotation) = best.unwrap_or((-1.0, Rotation::IDENTITY));
     if correlation < LEAST_CORRELATION {
         return Err(CaptureError::DifferentScenes {
@@ -255,6 +252,28 @@ pub fn register(
         correlation,
         sigma,
     })
+}
+
+/// Rotations refined through some levels, and the correlation of the last level's details; the best first.
+fn refined(
+    a: &[Level],
+    b: &[Level],
+    rotations: Vec<Rotation>,
+    levels: std::ops::RangeInclusive<usize>,
+) -> Vec<(f64, Rotation)> {
+    let last = *levels.end();
+    let (da, db) = (a[last].details(), b[last].details());
+    let mut found: Vec<(f64, Rotation)> = rotations
+        .into_par_iter()
+        .map(|mut r| {
+            for level in levels.clone() {
+                r = refine(&a[level], &b[level], r).map_or(r, |f| f.0);
+            }
+            (correlation(&da, &db, r), r)
+        })
+        .collect();
+    found.sort_by(|p, q| q.0.total_cmp(&p.0));
+    found
 }
 
 /// Gauss–Newton for the rotation and a constant: b(R⁻¹ e^(−ω×) d) − a(d) − o. The rotation and its standard deviation.

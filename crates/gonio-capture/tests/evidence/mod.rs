@@ -30,8 +30,57 @@ pub fn sunset(most: f32) -> Environment {
         .rotated_deg(110.0)
 }
 
+/// The tame sunset with a sun of 4° across, high beside the camera, of radiance 1500: more irradiance than all the rest.
+pub fn sunny() -> Environment {
+    let sky = sunset(8.0);
+    let towards = Vec3::new(0.6, 0.5, 0.6245);
+    let image = Image::from_fn(1024, 512, |x, y| {
+        let d = Layout::LatLong.direction([(x as f64 + 0.5) / 1024.0, (y as f64 + 0.5) / 512.0]);
+        if d.dot(towards) > Real::cos(2.0_f64.to_radians()) {
+            [1500.0; 3]
+        } else {
+            sky.radiance(d.to_f32())
+        }
+    });
+    Environment::from_image(image, Layout::LatLong).unwrap()
+}
+
 pub fn light(env: &Environment) -> impl Fn(Vec3<f64>) -> [f64; 3] + Sync {
     |d| env.radiance(d.to_f32()).map(f64::from)
+}
+
+/// What a diffuse ball of albedo 0.18 shows at each normal: the sum over blocks of 8 × 8 texels, each from the mean direction of its
+/// power.
+pub fn shading(env: &Environment) -> impl Fn(Vec3<f64>) -> [f64; 3] + Sync {
+    let (width, height) = (1024, 512);
+    let mut lamps = Vec::new();
+    for block in 0..width / 8 * height / 8 {
+        let (mut towards, mut power) = (Vec3::new(0.0, 0.0, 0.0), [0.0; 3]);
+        for q in 0..64 {
+            let x = block % (width / 8) * 8 + q % 8;
+            let y = block / (width / 8) * 8 + q / 8;
+            let uv = [
+                (x as f64 + 0.5) / width as f64,
+                (y as f64 + 0.5) / height as f64,
+            ];
+            let d = Layout::LatLong.direction(uv);
+            let omega = Layout::LatLong.jacobian(uv) / (width * height) as f64;
+            let l = env
+                .radiance(d.to_f32())
+                .map(|l| f64::from(l) * omega * 0.18 / PI);
+            towards = towards + d * l[1];
+            power = [0, 1, 2].map(|c| power[c] + l[c]);
+        }
+        lamps.push((towards.normalize(), power));
+    }
+    move |n| {
+        let mut sum = [0.0; 3];
+        for (d, power) in &lamps {
+            let cos = d.dot(n).max(0.0);
+            sum = [0, 1, 2].map(|c| sum[c] + cos * power[c]);
+        }
+        sum
+    }
 }
 
 /// A ball beside the middle of the picture, from `distance` radii away.
@@ -241,11 +290,49 @@ pub fn table() -> Vec<(&'static str, Errors)> {
     let ideal = perfect_film(&one).expose(&photo, "ideal");
     let exposed = real_film(&STOPS).expose(&photo, "exposed");
     let mut rows = Vec::new();
+    let mut row_in =
+        |env: &Environment, name, photos: &[Photo], options: &Options, studio: &Studio| {
+            rows.push((name, compare(&taken(photos, options).unwrap(), studio, env)));
+        };
+    let sunny = sunny();
+    // The sun clipped in the only exposure, and brought back.
+    let bright = studio.radiance(&light(&sunny), &|_| [0.0; 3]);
+    let film = Film {
+        response: identity,
+        deep: true,
+        vignetting: 0.0,
+        ..real_film(&[0.1])
+    };
+    let burnt = film.expose(&bright, "burnt");
+    row_in(
+        &sunny,
+        "a sun that every exposure clips",
+        &burnt,
+        &linear,
+        &studio,
+    );
+    let grey = Studio {
+        material: None,
+        rays: 1,
+        ..near(8.0, [180, 135])
+    };
+    // Before an even backdrop, that the ball stands out.
+    let ball_photo = grey.radiance(&|_| [0.001; 3], &shading(&sunny));
+    let ball_shot = film.expose(&ball_photo, "grey");
+    let restored = Options {
+        known_light: Some(KnownLight::GreyBall(ball_shot, None)),
+        ..linear.clone()
+    };
+    row_in(
+        &sunny,
+        "the same, restored by a grey ball",
+        &burnt,
+        &restored,
+        &studio,
+    );
+
     let mut row = |name, photos: &[Photo], options: &Options, studio: &Studio| {
-        rows.push((
-            name,
-            compare(&taken(photos, options).unwrap(), studio, &env),
-        ));
+        row_in(&env, name, photos, options, studio);
     };
     row("linear 16 bit, without faults", &ideal, &linear, &studio);
     row(
@@ -295,42 +382,6 @@ pub fn table() -> Vec<(&'static str, Errors)> {
             ..marked.clone()
         },
         &first,
-    );
-
-    // The sun clipped in the only exposure, and brought back.
-    let burnt = Film {
-        response: identity,
-        deep: true,
-        vignetting: 0.0,
-        ..real_film(&[0.05])
-    }
-    .expose(&photo, "burnt");
-    row("the sun clipped", &burnt, &linear, &studio);
-    let grey = Studio {
-        material: None,
-        rays: 1,
-        size: [180, 135],
-        ..near(8.0, [180, 135])
-    };
-    let shade = |n: Vec3<f64>| env.irradiance(n.to_f32()).map(|e| 0.18 / PI * e);
-    // In an even backdrop the ball stands out.
-    let ball_photo = grey.radiance(&|_| [0.02; 3], &shade);
-    let ball_shot = Film {
-        response: identity,
-        deep: true,
-        vignetting: 0.0,
-        ..real_film(&[0.5])
-    }
-    .expose(&ball_photo, "grey");
-    let restored = Options {
-        known_light: Some(KnownLight::GreyBall(ball_shot, None)),
-        ..linear.clone()
-    };
-    row(
-        "the same, restored by a grey ball",
-        &burnt,
-        &restored,
-        &studio,
     );
 
     // What must show.
