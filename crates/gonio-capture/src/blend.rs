@@ -149,7 +149,7 @@ fn trust(views: &[View], v: usize) -> Vec<f32> {
     // 4 σ of the usual disagreement, from its median.
     let limit = (4.0 * sizes[sizes.len() / 2] / 0.6745).max(DISAGREEMENT);
     let (w, h) = (view.panorama.image.width, view.panorama.image.height);
-    for k in 0..n {
+    for (k, trust) in trust.iter_mut().enumerate() {
         let d = view.panorama.direction(k);
         let angle = d
             .cross(view.towards_camera)
@@ -172,7 +172,7 @@ fn trust(views: &[View], v: usize) -> Vec<f32> {
         }
         if count > 0.0 {
             let excess = (sum / count).abs() / limit;
-            trust[k] = (2.0 - 2.0 * excess).saturate() as f32;
+            *trust = (2.0 - 2.0 * excess).saturate() as f32;
         }
     }
     trust

@@ -194,8 +194,8 @@ pub fn capture(
     let merged = blend::blend(views);
     for (v, mut p) in before.iter().cloned().enumerate().skip(1) {
         for pixel in &mut p.image.pixels {
-            for c in 0..3 {
-                pixel[c] *= merged.gains[v][c] as f32;
+            for (value, gain) in pixel.iter_mut().zip(merged.gains[v]) {
+                *value *= gain as f32;
             }
         }
         explain.difference(&format!("view{}-difference", v + 1), &before[0], &p)?;

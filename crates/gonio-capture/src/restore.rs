@@ -63,9 +63,9 @@ impl Lights {
                     for x in i..(i + k).min(image.width) {
                         let q = y * image.width + x;
                         let omega = solid_angle(image, q);
-                        towards = towards + direction(image, q) * omega;
-                        for c in 0..3 {
-                            power[c] += omega * f64::from(image.pixels[q][c]);
+                        towards += direction(image, q) * omega;
+                        for (sum, l) in power.iter_mut().zip(image.pixels[q]) {
+                            *sum += omega * f64::from(l);
                         }
                     }
                 }
