@@ -1,8 +1,8 @@
 //! The ball's outline in a photograph.
 //!
-//! First the circle of a small picture whose circumference is an edge nearly everywhere ([`search`]). Near the rim a ball
+//! First the circle of a small picture whose circumference is an edge nearly everywhere (`search.rs`). Near the rim a ball
 //! squeezes everything into lines that run along it, so that circle may be one of these. In the full picture the edges along
-//! many normals tell ([`rim`]): the outline is the outermost of the curves that nearly all normals have an edge on. Last, the
+//! many normals tell (`rim.rs`): the outline is the outermost of the curves that nearly all normals have an edge on. Last, the
 //! cone of rays (an ellipse; a circle for an orthographic camera) through these edges, by Gauss–Newton with Tukey's weights.
 
 mod edges;
