@@ -5,6 +5,7 @@
 mod arguments;
 mod brdf;
 mod ci;
+mod convert;
 mod damaged;
 mod diff;
 mod environment;

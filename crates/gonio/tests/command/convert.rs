@@ -1,0 +1,160 @@
+//! `gonio env convert`.
+
+use crate::support::{Place, panorama};
+use gonio::image::{CubeMap, Image};
+
+#[test]
+fn a_panorama_goes_round_through_files() {
+    let place = Place::new();
+    let sky = place.picture("sky.hdr", &panorama());
+    let report = place.json(&[
+        "env",
+        "convert",
+        &sky,
+        "cube.ktx2",
+        "--size",
+        "8",
+        "--mips",
+        "--json",
+    ]);
+    assert_eq!(report["to"]["layout"], "cube-strip");
+    assert_eq!(report["to"]["convention"], "opengl");
+    assert_eq!(report["files"], serde_json::json!(["cube.ktx2"]));
+    // A step at the horizon, half a texel of the panorama wide: 16 × 8 texels are coarse.
+    assert!(report["worst"].as_f64().unwrap() < 0.02, "{report}");
+    let cube = CubeMap::read(&place.path().join("cube.ktx2")).unwrap();
+    assert_eq!((cube.size, cube.levels.len()), (8, 4));
+    for (from, to, more) in [
+        ("cube.ktx2", "cube.dds", ["--texels", "bc6h"]),
+        ("cube.dds", "square.exr", ["--to", "octahedral"]),
+        ("cube.ktx2", "faces", ["--to", "cube-faces"]),
+        ("faces", "face_{face}.png", ["--exposure", "-2"]),
+        ("face_{face}.png", "back.exr", ["--rotate", "90,0,0"]),
+    ] {
+        let said = place.good(&["env", "convert", from, to, more[0], more[1]]);
+        assert!(
+            said.out.contains("ratio") && said.out.contains(to),
+            "{said:?}"
+        );
+        assert_eq!(said.err, "");
+    }
+    let above = place.image("face_py.png").get(4, 4);
+    // 2 · 2⁻² = 0.5, within a step of 8-bit sRGB.
+    assert!((above[0] - 0.5).abs() < 0.005, "{above:?}");
+    let info = place.json(&["env", "info", "faces", "--json"]);
+    assert_eq!(
+        (&info["layout"], &info["width"]),
+        (&"cube-strip".into(), &48.into())
+    );
+    // It is light, too.
+    let up = |env: &str| {
+        let said = place.good(&["measure", "irradiance", "--env", env, "--normal", "0,1,0"]);
+        said.out
+            .split_whitespace()
+            .find_map(|w| w.parse::<f64>().ok())
+            .unwrap()
+    };
+    assert!((up("cube.ktx2") / up("sky.hdr") - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn bad_words_and_files_are_answered() {
+    let place = Place::new();
+    let sky = place.picture("sky.exr", &panorama());
+    let square = place.picture("square.exr", &Image::filled(8, 8, [1.0; 3]));
+    let convert = |words: &[&'static str], code, expected: &[&str]| {
+        let all: Vec<&str> = [&["env", "convert"], words].concat();
+        place.bad(&all, code, expected);
+    };
+    assert_eq!((sky.as_str(), square.as_str()), ("sky.exr", "square.exr"));
+    convert(
+        &["sky.exr", "a.exr", "--to", "octahedrl"],
+        2,
+        &["did you mean \"octahedral\"", "cube-faces"],
+    );
+    convert(
+        &["sky.exr", "a.exr", "--convention", "pbr"],
+        2,
+        &["did you mean \"pbrt\""],
+    );
+    convert(&["sky.exr", "a.jpg"], 2, &[".jpg", ".ktx2"]);
+    convert(&["sky.exr", "a.hdr", "--mips"], 2, &["--mips", ".dds"]);
+    convert(
+        &["sky.exr", "a.png", "--texels", "half"],
+        2,
+        &["--texels half"],
+    );
+    convert(&["sky.exr", "a.exr", "--to", "cube-faces"], 2, &["{face}"]);
+    convert(
+        &["sky.exr", "a.exr", "--rotate", "1,2"],
+        2,
+        &["yaw,pitch,roll"],
+    );
+    convert(&["sky.exr", "no/a.exr"], 3, &["no", "mkdir"]);
+    convert(&["square.exr", "a.exr"], 3, &["8 × 8", "--from lat-long"]);
+    convert(
+        &["sky.exr", "a.exr", "--from", "cube-cross"],
+        3,
+        &["16 × 8", "4 : 3"],
+    );
+    convert(&["none.hdr", "a.exr"], 3, &["none.hdr: no such file"]);
+    place.good(&[
+        "env",
+        "convert",
+        "square.exr",
+        "a.exr",
+        "--from",
+        "octahedral",
+    ]);
+}
+
+#[test]
+fn unsound_texels_are_repaired_only_when_asked() {
+    let place = Place::new();
+    let mut image = Image::filled(16, 8, [2.0; 3]);
+    image.set(5, 3, [1.0, f32::NAN, 1.0]);
+    image.set(6, 3, [f32::INFINITY; 3]);
+    image.write(&place.path().join("sky.exr")).unwrap();
+    place.bad(
+        &["env", "convert", "sky.exr", "a.exr"],
+        3,
+        &["(5, 3)", "NaN", "2 such", "--repair"],
+    );
+    let said = place.good(&["env", "convert", "sky.exr", "a.exr", "--repair"]);
+    assert!(said.err.contains("2 unsound texels"), "{said:?}");
+    assert_eq!(place.image("a.exr"), Image::filled(16, 8, [2.0; 3]));
+    let info = place.json(&["env", "info", "sky.exr", "--repair", "--json"]);
+    assert_eq!(info["non_finite_replaced"], 2);
+}
+
+#[test]
+fn truncated_textures_name_the_byte() {
+    let place = Place::new();
+    place.picture("sky.exr", &panorama());
+    for name in ["a.ktx2", "a.dds"] {
+        place.good(&["env", "convert", "sky.exr", name, "--size", "4"]);
+        let bytes = place.read(name);
+        place.write(name, &bytes[..bytes.len() - 1]);
+        let byte = format!("byte {}", bytes.len() - 1);
+        place.bad(&["env", "info", name], 3, &[name, &byte, "end of the file"]);
+    }
+}
+
+#[test]
+fn black_and_single_texels_have_a_stated_result() {
+    let place = Place::new();
+    place.picture("one.exr", &Image::filled(1, 1, [3.0; 3]));
+    place.picture("black.exr", &Image::new(16, 8));
+    let said = place.good(&["env", "convert", "black.exr", "b.exr", "--to", "octahedral"]);
+    assert!(said.out.contains("none: no light"), "{said:?}");
+    place.bad(&["env", "convert", "one.exr", "o.ktx2"], 3, &["1 × 1"]);
+    place.good(&[
+        "env", "convert", "one.exr", "o.ktx2", "--from", "lat-long", "--size", "2",
+    ]);
+    let cube = CubeMap::read(&place.path().join("o.ktx2")).unwrap();
+    assert!(
+        cube.levels[0]
+            .iter()
+            .all(|face| *face == Image::filled(2, 2, [3.0; 3]))
+    );
+}
