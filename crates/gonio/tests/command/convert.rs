@@ -20,8 +20,9 @@ fn a_panorama_goes_round_through_files() {
     assert_eq!(report["to"]["layout"], "cube-strip");
     assert_eq!(report["to"]["convention"], "opengl");
     assert_eq!(report["files"], serde_json::json!(["cube.ktx2"]));
-    // A step at the horizon, half a texel of the panorama wide: 16 × 8 texels are coarse.
-    assert!(report["worst"].as_f64().unwrap() < 0.02, "{report}");
+    // The panorama's step at the horizon is blurred over a row of 22.5°: from below, where 0.5 meets 2, the glow between is
+    // ∫ 1.5 (1/2 − θ/22.5°) sin θ dω over half a row: 3 % of the lower half's irradiance.
+    assert!(report["worst"].as_f64().unwrap() < 0.04, "{report}");
     let cube = CubeMap::read(&place.path().join("cube.ktx2")).unwrap();
     assert_eq!((cube.size, cube.levels.len()), (8, 4));
     for (from, to, more) in [
@@ -54,7 +55,7 @@ fn a_panorama_goes_round_through_files() {
             .find_map(|w| w.parse::<f64>().ok())
             .unwrap()
     };
-    assert!((up("cube.ktx2") / up("sky.hdr") - 1.0).abs() < 0.02);
+    assert!((up("cube.ktx2") / up("sky.hdr") - 1.0).abs() < 0.03);
 }
 
 #[test]

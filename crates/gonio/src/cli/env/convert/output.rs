@@ -48,7 +48,7 @@ impl Form {
             None => Layout::LatLong,
             Some(word) => word.parse().map_err(|e: gonio_env::EnvError| {
                 let failure = Failure::from(e);
-                failure.rephrase(&[("layouts are ", "layouts are cube-faces, ")])
+                failure.rephrase(&[("ayouts are ", "ayouts are cube-faces, ")])
             })?,
         };
         if faces && !pattern {
