@@ -44,7 +44,7 @@ pub struct Options {
     pub margin: f64,
     /// Half-angle \[°] of the cone that shows the camera.
     pub camera_deg: f64,
-    /// Whether texels that nobody saw are filled.
+    /// Whether texels that nobody saw are filled; they are in any case if clipped light is restored.
     pub fill: bool,
     /// What clipped light is restored from.
     pub known_light: Option<KnownLight>,
@@ -205,35 +205,30 @@ pub fn capture(
     explain.confidence("confidence", &panorama)?;
 
     let mut filled = 0;
-    // Light is missing from irradiance if holes stay black: it is restored with them filled.
-    let mut whole = panorama.image.clone();
+    // Irradiance misses what a black hole would have given: clipped light is restored with the holes filled.
     if options.fill || options.known_light.is_some() {
         progress("filling what nobody saw", 0.9);
-        filled = fill::fill(&mut whole, &panorama.confidence);
+        filled = fill::fill(&mut panorama.image, &panorama.confidence);
     }
     let restored = match &options.known_light {
         None => None,
-        Some(light) => restore(
-            light,
-            &mut whole,
-            &panorama,
-            &response,
-            &found[0].1,
-            photos,
-            options,
-            lens,
-        )?,
-    };
-    if options.fill || options.known_light.is_none() {
-        panorama.image = if options.fill { whole } else { panorama.image };
-    } else {
-        for (k, p) in whole.pixels.iter().enumerate() {
-            let seen = panorama.confidence[k] >= fill::LEAST_CONFIDENCE
-                || panorama.image.pixels[k][1] > 0.0;
-            panorama.image.pixels[k] = if seen { *p } else { [0.0; 3] };
+        Some(light) => {
+            let mut image = std::mem::replace(&mut panorama.image, Image::new(1, 1));
+            let clipped = &panorama.clipped;
+            let found = restore(
+                light,
+                &mut image,
+                clipped,
+                &response,
+                &found[0].1,
+                photos,
+                options,
+                lens,
+            )?;
+            panorama.image = image;
+            found
         }
-        filled = 0;
-    }
+    };
     explain.panorama("panorama", &panorama.image)?;
     progress("done", 1.0);
 
@@ -412,7 +407,7 @@ fn lens(photo: &Photo, given: Lens, notes: &mut Vec<String>) -> Lens {
 fn restore(
     light: &KnownLight,
     image: &mut Image,
-    panorama: &Panorama,
+    clipped: &[f32],
     response: &Response,
     mirrored: &Outline,
     photos: &[Photo],
@@ -425,7 +420,7 @@ fn restore(
             let known =
                 options.exposures.is_none() && photos[0].exif.saturation_luminance().is_some();
             // L = 120 N²/(S t) = 1.2 / H for the exposure H of `Exif::exposure`.
-            restore::by_illuminance(image, &panorama.clipped, *lux, known.then_some(1.2))
+            restore::by_illuminance(image, clipped, *lux, known.then_some(1.2))
         }
         KnownLight::GreyBall(grey, circle) => {
             let exposures = grey
@@ -448,7 +443,7 @@ fn restore(
                     Err(e) => return Err(e),
                 },
             };
-            restore::by_grey_ball(image, &panorama.clipped, &radiance, &ball).map(Some)
+            restore::by_grey_ball(image, clipped, &radiance, &ball).map(Some)
         }
     }
 }

@@ -206,3 +206,53 @@ pub(crate) fn encode_png16(
     let bytes: Vec<u8> = codes.iter().flat_map(|c| c.to_ne_bytes()).collect();
     encode(path, &bytes, width, height, ExtendedColorType::Rgb16)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::codecs::tiff::TiffEncoder;
+
+    fn tiff16() -> (Vec<u8>, Vec<u16>) {
+        let codes: Vec<u16> = (0..5 * 3 * 3).map(|k| k * 1457).collect();
+        let bytes: Vec<u8> = codes.iter().flat_map(|c| c.to_ne_bytes()).collect();
+        let mut file = Cursor::new(Vec::new());
+        TiffEncoder::new(&mut file)
+            .write_image(&bytes, 5, 3, ExtendedColorType::Rgb16)
+            .unwrap();
+        (file.into_inner(), codes)
+    }
+
+    fn read(bytes: &[u8]) -> Result<RawImage, ImageError> {
+        let kind = FileFormat::of_content(bytes).unwrap_or(FileFormat::Tiff);
+        decode("a.tif", bytes, kind, Orientation::Apply, &Limits::default())
+    }
+
+    #[test]
+    fn a_tiff_of_16_bits_is_read_to_the_last_bit() {
+        let (file, codes) = tiff16();
+        assert_eq!(FileFormat::of_content(&file), Some(FileFormat::Tiff));
+        let found = read(&file).unwrap();
+        assert_eq!((found.width, found.height, found.has_alpha), (5, 3, false));
+        let RawData::U16(pixels) = found.data else {
+            panic!("16 bits became others");
+        };
+        let rgb: Vec<u16> = pixels.iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
+        assert_eq!(rgb, codes);
+    }
+
+    /// The picture's data end before its directory, so whatever is cut off is missed.
+    #[test]
+    fn a_truncated_tiff_is_an_error() {
+        let (file, _) = tiff16();
+        for n in 0..file.len() - 8 {
+            match read(&file[..n]) {
+                Err(
+                    ImageError::Format { .. }
+                    | ImageError::Unsupported { .. }
+                    | ImageError::Limit { .. },
+                ) => {}
+                other => panic!("{n} of {} bytes: {other:?}", file.len()),
+            }
+        }
+    }
+}

@@ -62,13 +62,13 @@ pub(in crate::cli) struct Arguments {
     /// Fill what no viewpoint saw, smoothly
     #[arg(long)]
     fill: bool,
-    /// Restore clipped light by a photograph of a grey ball, put where the mirrored ball stood
+    /// Restore clipped light by a photograph of a grey ball, put where the mirrored ball stood; fills, too
     #[arg(long, value_name = "PHOTO")]
     grey_ball: Vec<PathBuf>,
     /// Outline of the grey ball in pixels [default: found]
     #[arg(long, value_name = "X,Y,RADIUS", value_parser = circle, requires = "grey_ball")]
     grey_ball_at: Option<Circle>,
-    /// Restore clipped light by the illuminance on level ground, and write luminance
+    /// Restore clipped light by the illuminance on level ground, and write luminance; fills, too
     #[arg(long, value_name = "LX", value_parser = parse::finite, conflicts_with = "grey_ball")]
     lux: Option<f32>,
     /// Write a picture of every step into this folder
