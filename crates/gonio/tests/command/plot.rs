@@ -198,3 +198,19 @@ fn a_failure_leaves_the_old_file() {
     place.bad(&small(&["mirror"], "slice", "a.svg"), 2, &["mirror"]);
     assert_eq!(place.read("a.svg"), b"old");
 }
+
+/// A shader that ends for some directions only is an error, not a gap in a curve.
+#[test]
+fn a_shader_that_does_not_end_is_not_drawn() {
+    let place = Place::new();
+    place.write(
+        "stuck.wgsl",
+        "fn eval(wi: vec3f, wo: vec3f) -> vec3f {\n  var x = wi;\n  while x.x > 0.2 && x.x < 0.22 { x.y += 1.0; }\n  return x;\n}",
+    );
+    let arguments = ["brdf", "plot", "stuck.wgsl:step_limit=1000", "-o", "a.svg"];
+    place.bad(
+        &arguments,
+        3,
+        &["did not end after 1000 steps, in the loop at line 3"],
+    );
+}

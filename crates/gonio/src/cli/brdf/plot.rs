@@ -117,6 +117,10 @@ pub(super) fn run(arguments: Arguments) -> Result<(), Failure> {
     let bar = bar();
     let figure = draw(&arguments, &subjects, &options, &bar);
     bar.finish_and_clear();
+    // A shader that stopped ending is drawn as if it had no value there.
+    if let Some(error) = subjects.iter().find_map(|s| s.model.failure()) {
+        return Err(error.into());
+    }
     write(&figure?, &arguments)
 }
 

@@ -12,7 +12,7 @@ use std::path::Path;
 pub(super) struct Subject {
     pub name: String,
     pub spec: ModelSpec,
-    model: Model<f64, 3>,
+    pub model: Model<f64, 3>,
     relative_ior: Option<[f64; 3]>,
 }
 
