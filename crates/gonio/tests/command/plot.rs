@@ -205,7 +205,7 @@ fn a_shader_that_does_not_end_is_not_drawn() {
     let place = Place::new();
     place.write(
         "stuck.wgsl",
-        "fn eval(wi: vec3f, wo: vec3f) -> vec3f {\n  var x = wi;\n  while x.x > 0.2 && x.x < 0.22 { x.y += 1.0; }\n  return x;\n}",
+        "fn eval(wi: vec3f, wo: vec3f) -> vec3f {\n  var x = wi;\n  while x.x > 0.6 && x.x < 0.65 { x.y += 1.0; }\n  return x;\n}",
     );
     let arguments = ["brdf", "plot", "stuck.wgsl:step_limit=1000", "-o", "a.svg"];
     place.bad(
