@@ -163,7 +163,7 @@ fn a_shader_that_does_not_end_is_named() {
     let ball = BALL.replace("\"lambertian\"", "\"stuck.wgsl\"");
     let scene = place.write(
         "ball.toml",
-        &ball.replace("reflectance = 0.5", "step_limit = 1000"),
+        ball.replace("reflectance = 0.5", "step_limit = 1000"),
     );
     let said = place.good(&tiny(&[&scene, "-o", "a.png"]));
     for words in [
