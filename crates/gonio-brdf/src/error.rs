@@ -153,7 +153,7 @@ impl BrdfError {
                     crate::registry::suggest(found.trim_matches('`'), options.iter().copied())?;
                 Some(format!("did you mean `{near}`?"))
             }
-            Self::Shader(error) => error.help.clone().or_else(|| error.snippet()),
+            Self::Shader(error) => error.help.clone(),
             Self::Syntax { .. } => {
                 Some("write a model as name:key=value,key=value; a colour as r/g/b, #rrggbb or one number".into())
             }

@@ -159,7 +159,10 @@ impl Program {
             "`{}` did not end after {} steps, in the loop at line {line}",
             self.name, self.steps
         );
-        error
+        error.with_help(format!(
+            "give the loop an end that it reaches, or let it run longer: step_limit={}",
+            self.steps.saturating_mul(100)
+        ))
     }
 
     /// A machine that is idle on this thread, or a new one.

@@ -184,13 +184,14 @@ impl From<BrdfError> for Failure {
             }
             BrdfError::Format { .. } => Self::input(message).with_help(DAMAGED),
             BrdfError::Shader(error) => {
-                let failure = Self::input(message);
-                match help.or(error.help) {
-                    Some(help) => failure.with_help(help),
-                    None => {
-                        failure.with_help("the book's page on shaders says what a shader defines")
-                    }
+                let quoted = error.snippet().unwrap_or_default();
+                Self {
+                    quoted: quoted.lines().map(str::to_owned).collect(),
+                    ..Self::input(message)
                 }
+                .with_help(
+                    help.unwrap_or("the book's page on shaders says what a shader may hold".into()),
+                )
             }
             BrdfError::Interrupted => {
                 Self::interrupted(message).with_help("nothing was written: run it again")
