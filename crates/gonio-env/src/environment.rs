@@ -1,12 +1,13 @@
 //! [`Environment`], one radiance per direction.
 
 use crate::lookup::Map;
-use crate::sphere_table::{SphereTable, UNIFORM_DENSITY, uniform_direction};
+use crate::sampling::{Guide, SamplingMethod, SphereTable, UNIFORM_DENSITY, uniform_direction};
 use crate::texels::Remedy;
-use crate::{Convention, EnvError, Layout, Panorama, luminance};
+use crate::{Convention, EnvError, Layout, Panorama, Proxy, Sky, luminance};
 use gonio_image::Image;
-use gonio_num::{Real, Vec3};
-use std::sync::Arc;
+use gonio_num::{Frame, Real, Vec3};
+use gonio_radiometry::warp::{cosine_hemisphere, cosine_hemisphere_density};
+use std::sync::{Arc, OnceLock};
 
 /// A sampled direction towards the environment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,19 +32,26 @@ pub struct Environment {
     sin_yaw: f32,
     cos_yaw: f32,
     pub(crate) scale: [f32; 3],
+    proxy: Option<Proxy>,
 }
 
 #[derive(Debug, Clone)]
 pub(crate) enum Source {
     Uniform([f32; 3]),
     Picture(Arc<Picture>),
+    Sky(Arc<Sky>),
 }
 
 #[derive(Debug)]
 pub(crate) struct Picture {
-    pub map: Map,
+    pub map: Arc<Map>,
+    method: SamplingMethod,
     /// `None` if the picture is black.
     table: Option<SphereTable>,
+    /// Density over luminance of the unscaled picture, where the density is the luminance itself: in the lat-long layout.
+    density_of_luminance: Option<f64>,
+    /// For [`Guide::Compensated`], made when first asked for; `None` in it if nothing exceeds the mean.
+    compensated: OnceLock<Option<SphereTable>>,
 }
 
 /// Share of the uniform density in the sampling of a disc-shaped picture, whose table is resampled and could miss light.
@@ -89,12 +97,17 @@ impl Environment {
     }
 
     pub(crate) fn from_map(map: Map) -> Self {
-        let table = if map.layout.is_disc() {
-            disc_table(&map)
-        } else {
-            lat_long_table(&map)
-        };
-        Self::of(Source::Picture(Arc::new(Picture { map, table })))
+        let picture = Picture::new(Arc::new(map), SamplingMethod::default());
+        Self::of(Source::Picture(Arc::new(picture)))
+    }
+
+    /// Sampled by another method: same density, other directions for the same numbers. Without effect on what is no picture.
+    pub fn with_sampling_method(mut self, method: SamplingMethod) -> Self {
+        if let Source::Picture(picture) = &self.source {
+            let other = Picture::new(picture.map.clone(), method);
+            self.source = Source::Picture(Arc::new(other));
+        }
+        self
     }
 
     fn of(source: Source) -> Self {
@@ -104,7 +117,33 @@ impl Environment {
             sin_yaw: 0.0,
             cos_yaw: 1.0,
             scale: [1.0; 3],
+            proxy: None,
         }
+    }
+
+    /// The environment that is a sky with its sun.
+    pub fn from_sky(sky: Sky) -> Self {
+        Self::of(Source::Sky(Arc::new(sky)))
+    }
+
+    /// The sky that it is made of, if it is.
+    pub fn sky(&self) -> Option<&Sky> {
+        match &self.source {
+            Source::Sky(sky) => Some(sky),
+            _ => None,
+        }
+    }
+
+    /// As seen in a room: light comes from the surface of `proxy`, where the capture position saw it, instead of from infinitely far
+    /// away. Only the functions whose names end in `_from` know of it; the others go on to speak of the capture position.
+    pub fn with_proxy(mut self, proxy: Option<Proxy>) -> Self {
+        self.proxy = proxy;
+        self
+    }
+
+    /// The room around it, if it has one.
+    pub fn proxy(&self) -> Option<&Proxy> {
+        self.proxy.as_ref()
     }
 
     /// Turned by `yaw_deg` degrees about +y, counter-clockwise seen from above (right-handed), after any turn before.
@@ -180,23 +219,60 @@ impl Environment {
         self.times_scale(match &self.source {
             Source::Uniform(radiance) => *radiance,
             Source::Picture(picture) => picture.map.radiance(self.to_local(d)),
+            Source::Sky(sky) => sky.radiance(self.to_local(d)),
         })
+    }
+
+    /// [`Environment::radiance`] from the direction `d` at the point `p`: with a [`Proxy`], the radiance of the point of the room that
+    /// is seen in this direction. `p` matters not without one.
+    #[inline]
+    pub fn radiance_from(&self, p: Vec3<f32>, d: Vec3<f32>) -> [f32; 3] {
+        match &self.proxy {
+            None => self.radiance(d),
+            Some(proxy) => self.radiance(proxy.look_up(p, d).0),
+        }
+    }
+
+    /// Density \[sr⁻¹] of [`Environment::sample_from`] at the point `p`.
+    #[inline]
+    pub fn pdf_from(&self, p: Vec3<f32>, d: Vec3<f32>) -> f32 {
+        self.radiance_and_pdf_from(p, d).1
+    }
+
+    /// [`Environment::radiance_from`] and [`Environment::pdf_from`] at once.
+    #[inline]
+    pub fn radiance_and_pdf_from(&self, p: Vec3<f32>, d: Vec3<f32>) -> ([f32; 3], f32) {
+        match &self.proxy {
+            None => self.radiance_and_pdf(d),
+            Some(proxy) => {
+                let (seen, jacobian) = proxy.look_up(p, d);
+                let (radiance, pdf) = self.radiance_and_pdf(seen);
+                (radiance, pdf * jacobian)
+            }
+        }
+    }
+
+    /// [`Environment::sample`] at the point `p`: towards a point of the [`Proxy`], chosen by the light that the capture position sees
+    /// there.
+    #[inline]
+    pub fn sample_from(&self, p: Vec3<f32>, u: [f32; 2]) -> EnvSample {
+        let sample = self.sample(u);
+        let Some(proxy) = &self.proxy else {
+            return sample;
+        };
+        let wi = proxy.direction(p, sample.wi);
+        let (radiance, pdf) = self.radiance_and_pdf_from(p, wi);
+        EnvSample { wi, radiance, pdf }
     }
 
     /// Density \[sr⁻¹] with which [`Environment::sample`] chooses the unit direction `d` (world). It integrates to 1 over
     /// the sphere. A black environment samples the sphere uniformly.
     #[inline]
     pub fn pdf(&self, d: Vec3<f32>) -> f32 {
-        match &self.source {
-            Source::Uniform(_) => UNIFORM_DENSITY,
-            Source::Picture(picture) => {
-                let d = self.to_local(d);
-                picture.density(d, || Layout::LatLong.uv(d))
-            }
-        }
+        self.radiance_and_pdf(d).1
     }
 
-    /// [`Environment::radiance`] and [`Environment::pdf`] at once, for less than both cost.
+    /// [`Environment::radiance`] and [`Environment::pdf`] at once: hardly more than the radiance alone of a lat-long picture.
     #[inline]
     pub fn radiance_and_pdf(&self, d: Vec3<f32>) -> ([f32; 3], f32) {
         match &self.source {
@@ -204,11 +280,113 @@ impl Environment {
             Source::Picture(picture) => {
                 let d = self.to_local(d);
                 let map = &picture.map;
-                let uv = map.layout.uv(d);
-                let radiance = map.radiance_in(map.cell(uv));
-                let same = map.layout == Layout::LatLong;
-                let pdf = picture.density(d, || if same { uv } else { Layout::LatLong.uv(d) });
+                let radiance = map.radiance_in(map.cell(map.layout.uv(d)));
+                let pdf = match (picture.density_of_luminance, &picture.table) {
+                    (Some(factor), _) => (luminance(radiance) * factor) as f32,
+                    (None, Some(table)) => table.density(Layout::LatLong.uv(d)),
+                    (None, None) => UNIFORM_DENSITY,
+                };
                 (self.times_scale(radiance), pdf)
+            }
+            Source::Sky(sky) => {
+                let d = self.to_local(d);
+                (self.times_scale(sky.radiance(d)), sky.density(d))
+            }
+        }
+    }
+
+    /// Density \[sr⁻¹] with which [`Environment::sample_by`] chooses the unit direction `d` (world).
+    ///
+    /// It integrates to 1 over the sphere, but for [`Guide::Cosine`] to what is drawn at all: 1 but for the draws that end in patches
+    /// at the horizon without light above it.
+    #[inline]
+    pub fn pdf_by(&self, guide: Guide, d: Vec3<f32>) -> f32 {
+        match (guide, &self.source) {
+            (Guide::Cosine(n), Source::Uniform(_)) => {
+                cosine_hemisphere_density(Vec3::new(0.0, 0.0, n.dot(d)))
+            }
+            (Guide::Compensated, Source::Picture(picture)) => match picture.compensated() {
+                Some(table) => table.density(Layout::LatLong.uv(self.to_local(d))),
+                None => self.pdf(d),
+            },
+            (Guide::Cosine(n), Source::Picture(picture)) => match &picture.table {
+                Some(table) => {
+                    let d = self.to_local(d);
+                    table.density_about(Layout::LatLong.uv(d), self.to_local(n))
+                }
+                None => UNIFORM_DENSITY,
+            },
+            _ => self.pdf(d),
+        }
+    }
+
+    /// As [`Environment::sample`], by another [`Guide`]. The pdf is [`Environment::pdf_by`]'s, to the bit. A pdf of 0 says that there
+    /// is nothing to be drawn: all light is below the horizon.
+    #[inline]
+    pub fn sample_by(&self, guide: Guide, u: [f32; 2]) -> EnvSample {
+        let local = match (guide, &self.source) {
+            (Guide::Cosine(n), Source::Uniform(_)) => {
+                let wi = Frame::from_normal(n).to_world(cosine_hemisphere(u));
+                return self.sampled(guide, wi);
+            }
+            (Guide::Compensated, Source::Picture(picture)) => match picture.compensated() {
+                Some(table) => table.sample(u),
+                None => return self.sample(u),
+            },
+            (Guide::Cosine(n), Source::Picture(picture)) => match &picture.table {
+                Some(table) => match table.sample_about(u, self.to_local(n)) {
+                    Some(d) => d,
+                    None => {
+                        return EnvSample {
+                            wi: n,
+                            radiance: [0.0; 3],
+                            pdf: 0.0,
+                        };
+                    }
+                },
+                None => return self.sample(u),
+            },
+            _ => return self.sample(u),
+        };
+        self.sampled(guide, self.to_world(local))
+    }
+
+    #[inline(always)]
+    fn sampled(&self, guide: Guide, wi: Vec3<f32>) -> EnvSample {
+        EnvSample {
+            wi,
+            radiance: self.radiance(wi),
+            pdf: self.pdf_by(guide, wi),
+        }
+    }
+
+    /// [`Environment::sample_by`] at the point `p`, as [`Environment::sample_from`].
+    #[inline]
+    pub fn sample_from_by(&self, guide: Guide, p: Vec3<f32>, u: [f32; 2]) -> EnvSample {
+        let Some(proxy) = &self.proxy else {
+            return self.sample_by(guide, u);
+        };
+        let guide = in_a_room(guide);
+        let wi = proxy.direction(p, self.sample_by(guide, u).wi);
+        let (radiance, pdf) = self.radiance_and_pdf_from_by(guide, p, wi);
+        EnvSample { wi, radiance, pdf }
+    }
+
+    /// [`Environment::radiance_from`] and the density of [`Environment::sample_from_by`] at once.
+    #[inline]
+    pub fn radiance_and_pdf_from_by(
+        &self,
+        guide: Guide,
+        p: Vec3<f32>,
+        d: Vec3<f32>,
+    ) -> ([f32; 3], f32) {
+        match &self.proxy {
+            None if guide == Guide::Luminance => self.radiance_and_pdf(d),
+            None => (self.radiance(d), self.pdf_by(guide, d)),
+            Some(proxy) => {
+                let (seen, jacobian) = proxy.look_up(p, d);
+                let pdf = self.pdf_by(in_a_room(guide), seen);
+                (self.radiance(seen), pdf * jacobian)
             }
         }
     }
@@ -224,7 +402,8 @@ impl Environment {
                 Some(table) => table.sample(u),
                 None => uniform_direction(u),
             },
-            Source::Uniform(_) => uniform_direction(u),
+            Source::Sky(sky) if !sky.is_black() => sky.sample(u),
+            Source::Uniform(_) | Source::Sky(_) => uniform_direction(u),
         };
         let wi = self.to_world(local);
         // Of the final direction, so that `pdf` gives the same bits for it.
@@ -236,7 +415,7 @@ impl Environment {
     /// was asked for.
     pub fn replaced_texels(&self) -> u64 {
         match &self.source {
-            Source::Uniform(_) => 0,
+            Source::Uniform(_) | Source::Sky(_) => 0,
             Source::Picture(p) => p.map.defects.non_finite + p.map.defects.negative,
         }
     }
@@ -245,6 +424,7 @@ impl Environment {
     pub fn is_black(&self) -> bool {
         let dark = |c: usize| match &self.source {
             Source::Uniform(radiance) => radiance[c] <= 0.0,
+            Source::Sky(sky) => sky.is_black(),
             Source::Picture(p) => p.table.is_none() || p.map.texels.iter().all(|t| t[c] <= 0.0),
         };
         (0..3).all(|c| self.scale[c] <= 0.0 || dark(c))
@@ -261,12 +441,41 @@ impl Environment {
 }
 
 impl Picture {
-    #[inline(always)]
-    fn density(&self, d: Vec3<f32>, uv: impl FnOnce() -> [f32; 2]) -> f32 {
-        match &self.table {
-            Some(table) => table.density(d, uv()),
-            None => UNIFORM_DENSITY,
+    fn new(map: Arc<Map>, method: SamplingMethod) -> Self {
+        let table = if map.layout.is_disc() {
+            disc_table(&map, method)
+        } else {
+            lat_long_table(&map, method)
+        };
+        let density_of_luminance = match (&table, map.layout) {
+            (Some(table), Layout::LatLong) => {
+                let (peak, _, _) = map.peak();
+                Some(table.scale() / f64::from(peak as f32))
+            }
+            _ => None,
+        };
+        Self {
+            map,
+            method,
+            table,
+            density_of_luminance,
+            compensated: OnceLock::new(),
         }
+    }
+
+    fn compensated(&self) -> Option<&SphereTable> {
+        let made = self
+            .compensated
+            .get_or_init(|| self.table.as_ref()?.compensated(self.method));
+        made.as_ref()
+    }
+}
+
+/// From another point of a room a patch of the wall has another cosine than from where the picture was taken.
+fn in_a_room(guide: Guide) -> Guide {
+    match guide {
+        Guide::Cosine(_) => Guide::Luminance,
+        other => other,
     }
 }
 
@@ -293,14 +502,14 @@ fn check_colour(name: &'static str, rgb: [f32; 3]) -> Result<(), EnvError> {
 }
 
 /// Nodes at the picture's own texels.
-fn lat_long_table(map: &Map) -> Option<SphereTable> {
+fn lat_long_table(map: &Map, method: SamplingMethod) -> Option<SphereTable> {
     let values = map.texels.iter().map(|t| luminance(*t) as f32).collect();
-    SphereTable::new(map.width, map.height, values)
+    SphereTable::with_method(map.width, map.height, values, method)
 }
 
 /// Nodes on a grid about as fine as the disc, each the largest luminance on the 3 × 3 half-steps around it, above a
 /// floor, so that the density is positive wherever light could come from.
-fn disc_table(map: &Map) -> Option<SphereTable> {
+fn disc_table(map: &Map, method: SamplingMethod) -> Option<SphereTable> {
     let (peak, _, _) = map.peak();
     if peak <= 0.0 {
         return None;
@@ -339,5 +548,5 @@ fn disc_table(map: &Map) -> Option<SphereTable> {
     for v in &mut values {
         *v += floor;
     }
-    SphereTable::new(width, height, values)
+    SphereTable::with_method(width, height, values, method)
 }

@@ -93,6 +93,18 @@ pub enum EnvError {
         /// The convention that was probably meant.
         suggestion: Option<&'static str>,
     },
+    /// A key that a description does not have.
+    #[error("unknown key \"{found}\" of {of}")]
+    UnknownWord {
+        /// What is described.
+        of: &'static str,
+        /// The key.
+        found: String,
+        /// A key that was probably meant.
+        suggestion: Option<&'static str>,
+        /// Every key.
+        known: &'static [&'static str],
+    },
     /// A number out of range.
     #[error("{name} = {found}, expected {expected}")]
     Parameter {
@@ -130,7 +142,7 @@ impl EnvError {
             EnvError::Image(_) => None,
             EnvError::NotFound { suggestion, .. } => Some(match suggestion {
                 Some(word) => format!("did you mean \"{word}\"?"),
-                None => "an environment is \"uniform:1\", \"uniform:r/g/b\", or a picture (.hdr, .exr, .png, .jpg, .ktx2, .dds)".to_owned(),
+                None => "an environment is \"uniform:1\", \"uniform:r/g/b\", \"sky:elevation=40\", or a picture (.hdr, .exr, .png, .jpg, .ktx2, .dds)".to_owned(),
             }),
             EnvError::Texel { .. } => Some(
                 "replace them: `--env-sanitize` makes NaN and negative 0, infinite the largest finite value; `--repair` takes \
@@ -161,6 +173,12 @@ impl EnvError {
                     None => format!("conventions are {names}"),
                 })
             }
+            EnvError::UnknownWord {
+                suggestion, known, ..
+            } => Some(match suggestion {
+                Some(word) => format!("did you mean \"{word}\"? Keys are {}", known.join(", ")),
+                None => format!("keys are {}", known.join(", ")),
+            }),
             EnvError::Parameter { .. } => None,
         }
     }

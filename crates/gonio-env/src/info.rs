@@ -14,6 +14,8 @@ use std::fmt;
 pub struct EnvInfo {
     /// The file it was read from.
     pub file: Option<String>,
+    /// The sky that it is, in words.
+    pub sky: Option<String>,
     /// How the picture is laid out; nothing for a uniform environment.
     pub layout: Option<Layout>,
     /// Whose turn of the layout; nothing for a uniform environment.
@@ -170,6 +172,7 @@ impl Environment {
         let times_scale = |l: [f32; 3]| [0, 1, 2].map(|k| f64::from(l[k]) * scale[k]);
         let mut info = EnvInfo {
             file: None,
+            sky: None,
             layout: None,
             convention: None,
             width: 0,
@@ -191,6 +194,18 @@ impl Environment {
             texels_at_maximum: 0,
             looks_clipped: false,
         };
+        if let Source::Sky(sky) = &self.source {
+            let d = self.to_world_f64(sky.sun_position().direction());
+            info.sky = Some(sky.words());
+            info.dynamic_range = None;
+            info.peak.radiance = sky.peak();
+            for (to, factor) in info.peak.radiance.iter_mut().zip(scale) {
+                *to *= factor;
+            }
+            info.peak.direction = d.to_array();
+            info.peak.theta_deg = Real::atan2((d.x * d.x + d.z * d.z).sqrt(), d.y).to_degrees();
+            info.peak.phi_deg = Real::atan2(d.x, -d.z).to_degrees();
+        }
         let Source::Picture(picture) = &self.source else {
             return info;
         };
@@ -264,7 +279,10 @@ impl fmt::Display for EnvInfo {
                     _ => String::new(),
                 }
             )?,
-            None => writeln!(f, "layout           uniform")?,
+            None => match &self.sky {
+                Some(sky) => writeln!(f, "layout           {sky}")?,
+                None => writeln!(f, "layout           uniform")?,
+            },
         }
         writeln!(f, "rotation         {:.3}°", self.yaw_deg)?;
         writeln!(f, "{:17}{:>12} {:>12} {:>12}", "", "R", "G", "B")?;

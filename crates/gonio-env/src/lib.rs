@@ -19,10 +19,10 @@
 //!
 //! # Key decisions
 //! - Radiance is interpolated bilinearly between texel centres: around the circle in longitude, constant beyond the
-//!   first and last row. The sampling density is interpolated from the **same** nodes, linearly in longitude and in
-//!   cos θ, whose product is solid angle. So it is positive wherever radiance is, continuous, finite at the poles,
-//!   integrates to 1 by construction, and needs no division by sin θ. Rejected: a table of constant texels, which gives
-//!   zero density to the half texel of glow around a bright texel on black.
+//!   first and last row. The sampling density is **the luminance of that interpolation**, exactly, times sin θ over the picture. So it
+//!   is positive wherever radiance is, continuous, finite at the poles, needs no division by sin θ, and costs nothing beside the
+//!   radiance. Rejected: a table of constant texels, which gives zero density to the half texel of glow around a bright texel on
+//!   black; and linear in cos θ, which inverts in closed form but misses near the poles.
 //! - A sample's radiance and density are those of its final, rounded direction: [`Environment::sample`] and
 //!   [`Environment::pdf`] agree to the last bit.
 //! - Pictures are checked when they are read: a texel that is NaN, infinite or negative is an error that names it, or,
@@ -37,9 +37,12 @@ mod irradiance;
 mod load;
 mod lookup;
 mod panorama;
+mod product;
 pub mod projection;
+mod proxy;
 mod resample;
-mod sphere_table;
+mod sampling;
+pub mod sky;
 pub mod test_image;
 mod texels;
 
@@ -49,8 +52,12 @@ pub use info::{EnvInfo, Peak};
 pub use irradiance::Irradiance;
 pub use load::LoadOptions;
 pub use panorama::{Conversion, Kept, Panorama};
+pub use product::{Candidates, ProductSample, Reflected};
 pub use projection::{Convention, Layout, View};
+pub use proxy::Proxy;
 pub use resample::{Filter, NO_ROTATION, Rotation, SIX_AXES, rotation_deg};
+pub use sampling::{Guide, SamplingMethod};
+pub use sky::{Sky, SkyOptions};
 
 /// Luminance of linear RGB with Rec.709 primaries, relative to white (1, 1, 1).
 pub(crate) fn luminance(rgb: [f32; 3]) -> f64 {

@@ -5,7 +5,7 @@ use crate::info::Origin;
 use crate::lookup::Map;
 use crate::panorama::{self, Panorama};
 use crate::texels::Remedy;
-use crate::{Convention, Conversion, EnvError, Environment, Layout};
+use crate::{Convention, Conversion, EnvError, Environment, Layout, Sky};
 use gonio_image::Limits;
 use std::path::Path;
 
@@ -104,7 +104,8 @@ impl Environment {
         Ok(Self::from_map(map))
     }
 
-    /// Reads what stands after `--env`: `uniform:1`, `uniform:r/g/b` (radiance in W m⁻² sr⁻¹), or a file's name.
+    /// Reads what stands after `--env`: `uniform:1`, `uniform:r/g/b` (radiance in W m⁻² sr⁻¹), `sky:` and the words of
+    /// [`SkyOptions`](crate::SkyOptions), or a file's name.
     ///
     /// ```
     /// use gonio_env::{Environment, LoadOptions};
@@ -114,15 +115,21 @@ impl Environment {
     /// ```
     ///
     /// # Errors
-    /// [`EnvError::Parameter`] for a uniform radiance that is no number, and as [`Environment::load`].
+    /// [`EnvError::Parameter`] for a uniform radiance or a sky that is none, [`EnvError::UnknownWord`], and as [`Environment::load`].
     pub fn parse(text: &str, options: &LoadOptions) -> Result<Self, EnvError> {
         if let Some(value) = text.strip_prefix("uniform:") {
             return Self::try_uniform(parse_radiance(value)?);
         }
+        if let Some(words) = text.strip_prefix("sky:") {
+            return Ok(Self::from_sky(Sky::new(words.parse()?)?));
+        }
         match Self::load_with(text, options) {
             Err(EnvError::NotFound { file, .. }) => {
                 let word = text.split(':').next().unwrap_or(text);
-                let suggestion = suggest(word, &["uniform"]).map(|_| "uniform:1");
+                let suggestion = suggest(word, &["uniform", "sky"]).map(|near| match near {
+                    "sky" => "sky:elevation=40",
+                    _ => "uniform:1",
+                });
                 Err(EnvError::NotFound { file, suggestion })
             }
             other => other,

@@ -161,6 +161,7 @@ fn options(side: u32, samples: u32) -> RenderOptions {
         integrator: Integrator::Path(Path {
             max_bounces: 7,
             roulette_after: 4,
+            ..Path::default()
         }),
         sampler: SamplerKind::Sobol,
         filter: PixelFilter::Box,

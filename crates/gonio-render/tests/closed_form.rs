@@ -79,6 +79,7 @@ fn a_closed_furnace_box() {
             Integrator::Path(Path {
                 max_bounces: bounces,
                 roulette_after: 3,
+                ..Path::default()
             })
         };
         for (integrator, expected) in [

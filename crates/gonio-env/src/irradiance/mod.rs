@@ -61,6 +61,10 @@ impl Environment {
                     normals.len()
                 ]
             }
+            Source::Sky(sky) => local
+                .iter()
+                .map(|n| estimate(sky.irradiance(*n, 256), sky.irradiance(*n, 128)))
+                .collect(),
             Source::Picture(p) if p.map.layout.is_disc() => {
                 let fine = disc::irradiances(&p.map, &local, 2);
                 let coarse = disc::irradiances(&p.map, &local, 1);
@@ -99,6 +103,7 @@ impl Environment {
     pub fn mean_radiance(&self) -> [f64; 3] {
         let mean = match &self.source {
             Source::Uniform(radiance) => radiance.map(f64::from),
+            Source::Sky(sky) => sky.mean_radiance(),
             Source::Picture(p) if p.map.layout.is_disc() => disc::mean(&p.map),
             Source::Picture(p) => Grid::new(&p.map).mean(),
         };

@@ -3,18 +3,21 @@
 //! Lr(ωr) = Σᵢ Lᵢ f cosθᵢ over point, spot and directional lights (12), plus ∫ Li f cosθi dωi over area lights and the
 //! environment (13). Where a surface transmits, the light may come from its other side.
 
-use super::vertex::{Vertex, arrive, environment_radiance};
-use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
+use super::vertex::{Vertex, arrive};
+use super::{EnvironmentSampling, RayCounts, dimension, power_heuristic, product, scaled, sum};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{Interior, Scene};
+use gonio_scene::{Interior, Light, Scene};
 
-/// Options of the direct integrator: none so far.
+/// Options of the direct integrator.
 ///
 /// The sum over point lights is exact. Each area light and the environment is one integral, estimated from one sample of
 /// that light and one direction drawn by the reflection function, joined by multiple importance sampling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Direct;
+pub struct Direct {
+    /// How light from the environment is sampled.
+    pub environment: EnvironmentSampling,
+}
 
 impl Direct {
     /// Radiance that `vertex` reflects toward its viewer, which is in the bodies of `interior`.
@@ -27,11 +30,20 @@ impl Direct {
         counts: &mut RayCounts,
     ) -> [f32; 3] {
         let mut total = [0.0; 3];
+        let guide = self.environment.guide(vertex);
         if !vertex.model.is_delta() {
             for light in scene.lights.each() {
+                if let EnvironmentSampling::Product(candidates) = self.environment
+                    && let Light::Environment(environment) = light.light()
+                {
+                    let by = (environment, candidates);
+                    let direct = vertex.reflect_product(scene, by, 0, interior, stream, counts);
+                    total = sum(total, direct);
+                    continue;
+                }
                 stream.seek(dimension::LIGHTS + 3 * light.index());
                 let [part, position @ ..] = stream.next_3d();
-                let Some(sample) = light.sample(&vertex.point, part, position) else {
+                let Some(sample) = light.sample_by(guide, &vertex.point, part, position) else {
                     continue;
                 };
                 let direct = vertex.reflect_light(scene, &sample, interior, counts, |density| {
@@ -70,10 +82,10 @@ impl Direct {
             counts,
         );
         let (radiance, density) = match next {
-            None => (
-                environment_radiance(scene, drawn.wi),
-                scene.lights.environment().map_or(0.0, |e| e.pdf(drawn.wi)),
-            ),
+            None if self.environment.takes_all(drawn.delta) => return total,
+            None => scene.lights.environment().map_or(([0.0; 3], 0.0), |e| {
+                e.radiance_and_pdf_from_by(guide, vertex.point.p, drawn.wi)
+            }),
             Some(next) => (
                 scene.emitted(&next.point, next.wo_world),
                 density_of_light(scene, vertex, &next, drawn.wi),

@@ -1,10 +1,12 @@
 //! Integrators: estimates of the radiance that arrives along a ray.
 
 pub mod direct;
+mod environment;
 pub mod path;
 mod vertex;
 
 pub use direct::Direct;
+pub use environment::EnvironmentSampling;
 pub use path::Path;
 pub use vertex::Vertex;
 
@@ -51,7 +53,10 @@ impl Integrator {
         let (mut interior, mut left) = (*interior, [1.0; 3]);
         let arrived = vertex::arrive(scene, ray, &mut interior, &mut left, 0, stream, counts);
         let (radiance, first) = match arrived {
-            None => (vertex::environment_radiance(scene, ray.direction), None),
+            None => (
+                vertex::environment_radiance(scene, ray.origin, ray.direction),
+                None,
+            ),
             Some(vertex) => {
                 let first = FirstSurface {
                     albedo: vertex.albedo,
@@ -128,6 +133,10 @@ pub(crate) mod dimension {
     /// any bounce, and another for each, since one number for two decisions would make them alike.
     pub const fn of_opacity(segment: u32, passed: u32) -> u32 {
         (1 << 24) + segment * MOST_PASSED + passed
+    }
+    /// Where the candidates of reflection `bounce` begin, three numbers each and three to choose: above all of the others.
+    pub const fn of_product(bounce: u32) -> u32 {
+        (1 << 30) + bounce * 4096
     }
     /// Where `direct` begins to draw for its lights, three numbers each.
     pub const LIGHTS: u32 = 1 << 20;

@@ -1,9 +1,10 @@
 //! Path tracing: the reflection equation, applied again to the light that other surfaces reflect (Kajiya 1986).
 
 use super::vertex::{Vertex, arrive};
-use super::{RayCounts, dimension, power_heuristic, product, scaled, sum};
+use super::{EnvironmentSampling, RayCounts, dimension, power_heuristic, product, scaled, sum};
+use gonio_env::Guide;
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{Interior, Scene};
+use gonio_scene::{Interior, Light, Scene};
 
 /// Options of the path tracer.
 ///
@@ -16,6 +17,8 @@ pub struct Path {
     /// Reflections before Russian roulette may end a path. Roulette leaves the expected image as it is. It judges a path by the
     /// energy that it carries, not by its radiance, which is scaled inside a body of glass.
     pub roulette_after: u32,
+    /// How light from the environment is sampled.
+    pub environment: EnvironmentSampling,
 }
 
 impl Default for Path {
@@ -24,6 +27,7 @@ impl Default for Path {
         Self {
             max_bounces: 64,
             roulette_after: 4,
+            environment: EnvironmentSampling::Luminance,
         }
     }
 }
@@ -50,22 +54,9 @@ impl Path {
                 break;
             };
             let base = dimension::of_bounce(bounce);
-            let light = if vertex.model.is_delta() {
-                None
-            } else {
-                stream.seek(base);
-                let choice = stream.next_1d();
-                let position = stream.next_2d();
-                scene.lights.sample(&vertex.point, choice, position)
-            };
-            if let Some(light) = light {
-                let direct = vertex.reflect_light(scene, &light, &interior, counts, |density| {
-                    if light.delta {
-                        1.0
-                    } else {
-                        power_heuristic(light.pdf, density)
-                    }
-                });
+            let guide = self.environment.guide(vertex);
+            if !vertex.model.is_delta() {
+                let direct = self.direct(scene, vertex, guide, bounce, &interior, stream, counts);
                 total = sum(total, product(throughput, direct));
             }
 
@@ -98,7 +89,11 @@ impl Path {
                 counts,
             );
             let Some(next) = &current else {
-                let (radiance, density) = scene.lights.environment_radiance_and_pdf(drawn.wi);
+                if self.environment.takes_all(drawn.delta) {
+                    break;
+                }
+                let (radiance, density) =
+                    (scene.lights).environment_radiance_and_pdf_by(guide, from, drawn.wi);
                 let light = scaled(product(throughput, radiance), weight(density));
                 total = sum(total, light);
                 break;
@@ -123,5 +118,49 @@ impl Path {
             }
         }
         total
+    }
+
+    /// Light that comes straight from one of the lights, scattered toward the viewer, with the weight that joins it to the direction
+    /// drawn by the reflection function.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "the state of a path")]
+    fn direct(
+        &self,
+        scene: &Scene,
+        vertex: &Vertex<'_>,
+        guide: Guide,
+        bounce: u32,
+        interior: &Interior,
+        stream: &mut SampleStream,
+        counts: &mut RayCounts,
+    ) -> [f32; 3] {
+        stream.seek(dimension::of_bounce(bounce));
+        let choice = stream.next_1d();
+        let position = stream.next_2d();
+        let lights = &scene.lights;
+        if let EnvironmentSampling::Product(candidates) = self.environment
+            && let Some((chosen, probability, _)) = lights.choose(choice)
+            && let Light::Environment(environment) = chosen.light()
+        {
+            let direct = vertex.reflect_product(
+                scene,
+                (environment, candidates),
+                bounce,
+                interior,
+                stream,
+                counts,
+            );
+            return scaled(direct, 1.0 / probability);
+        }
+        let Some(light) = lights.sample_by(guide, &vertex.point, choice, position) else {
+            return [0.0; 3];
+        };
+        vertex.reflect_light(scene, &light, interior, counts, |density| {
+            if light.delta {
+                1.0
+            } else {
+                power_heuristic(light.pdf, density)
+            }
+        })
     }
 }

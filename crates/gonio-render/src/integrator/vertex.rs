@@ -4,7 +4,7 @@ use super::{RayCounts, dimension, product, scaled};
 use gonio_brdf::{Brdf, Model, Sample};
 use gonio_num::{Frame, Vec3};
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{Interior, LightSample, Ray, Scene, SurfacePoint};
+use gonio_scene::{Interior, LightSample, LightTarget, Ray, Scene, SurfacePoint};
 use std::borrow::Cow;
 
 /// A point on a surface with its reflection function, seen from one direction.
@@ -97,12 +97,12 @@ pub(super) fn arrive<'a>(
     None
 }
 
-/// Radiance of the environment from direction `d`; black without one.
-pub(super) fn environment_radiance(scene: &Scene, d: Vec3<f32>) -> [f32; 3] {
+/// Radiance of the environment from direction `d` at the point `p`; black without one.
+pub(super) fn environment_radiance(scene: &Scene, p: Vec3<f32>, d: Vec3<f32>) -> [f32; 3] {
     scene
         .lights
         .environment()
-        .map_or([0.0; 3], |e| e.radiance(d))
+        .map_or([0.0; 3], |e| e.radiance_from(p, d))
 }
 
 impl Vertex<'_> {
@@ -193,6 +193,29 @@ impl Vertex<'_> {
             product(f_cos, sample.radiance),
             weight(density) / sample.pdf,
         );
+        self.unblocked(
+            scene,
+            sample.wi,
+            sample.target,
+            contribution,
+            interior,
+            counts,
+        )
+    }
+
+    /// What is left of `contribution`, which comes from `target` in the direction `wi`, by what stands in between.
+    ///
+    /// - `interior`: the bodies on the viewer's side
+    #[inline(always)]
+    pub(super) fn unblocked(
+        &self,
+        scene: &Scene,
+        wi: Vec3<f32>,
+        target: LightTarget,
+        contribution: [f32; 3],
+        interior: &Interior,
+        counts: &mut RayCounts,
+    ) -> [f32; 3] {
         if contribution == [0.0; 3] {
             return contribution;
         }
@@ -200,12 +223,12 @@ impl Vertex<'_> {
         let mut beyond;
         let interior = if self.bounds_a_body {
             beyond = *interior;
-            self.cross(scene, &mut beyond, sample.wi);
+            self.cross(scene, &mut beyond, wi);
             &beyond
         } else {
             interior
         };
-        let left = scene.transmittance(&self.point, sample.wi, sample.target, interior);
+        let left = scene.transmittance(&self.point, wi, target, interior);
         product(contribution, left)
     }
 }

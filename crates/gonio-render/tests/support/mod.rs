@@ -7,17 +7,20 @@ use gonio_brdf::ModelSpec;
 use gonio_env::Environment;
 use gonio_num::{Affine3, Vec3};
 use gonio_radiometry::sequence::SamplerKind;
-use gonio_render::integrator::{Direct, Path};
+use gonio_render::integrator::{Direct, EnvironmentSampling, Path};
 use gonio_render::{Film, Integrator, PixelFilter, RenderOptions, Target, render};
 use gonio_scene::{Camera, Light, Material, Scene, SceneBuilder, Shape};
 use gonio_verify::statistics::{Moments, t_test};
 use std::ops::ControlFlow;
 
 pub const INTEGRATORS: [Integrator; 2] = [
-    Integrator::Direct(Direct),
+    Integrator::Direct(Direct {
+        environment: EnvironmentSampling::Luminance,
+    }),
     Integrator::Path(Path {
         max_bounces: 64,
         roulette_after: 4,
+        environment: EnvironmentSampling::Luminance,
     }),
 ];
 pub const SAMPLERS: [SamplerKind; 2] = [SamplerKind::Independent, SamplerKind::Sobol];

@@ -4,7 +4,7 @@ use super::emitter::Emitter;
 use super::punctual::illuminate;
 use super::{Light, LightSample, LightTarget, luminance};
 use crate::{Geometry, Material, SurfacePoint};
-use gonio_env::Environment;
+use gonio_env::{Environment, Guide};
 use gonio_num::Vec3;
 use gonio_radiometry::warp::Discrete;
 use std::f64::consts::PI;
@@ -114,10 +114,31 @@ impl Lights {
     /// Nothing if there is no light, or if none comes from the direction chosen; the estimate is then zero. What `from` is made
     /// of and which way it faces has no influence.
     pub fn sample(&self, from: &SurfacePoint, u_select: f32, u: [f32; 2]) -> Option<LightSample> {
-        let (index, probability, rest) = self.choice.as_ref()?.sample(u_select);
-        let mut sample = self.sample_one(index as u32, from, rest, u)?;
+        self.sample_by(Guide::Luminance, from, u_select, u)
+    }
+
+    /// As [`Lights::sample`], with the environment sampled by `guide`.
+    #[inline]
+    pub fn sample_by(
+        &self,
+        guide: Guide,
+        from: &SurfacePoint,
+        u_select: f32,
+        u: [f32; 2],
+    ) -> Option<LightSample> {
+        let (light, probability, rest) = self.choose(u_select)?;
+        let mut sample = self.sample_one(guide, light.index, from, rest, u)?;
         sample.pdf *= probability;
         (sample.pdf > 0.0).then_some(sample)
+    }
+
+    /// Chooses a light: which, with what probability, and a number uniform in \[0, 1) again. Nothing if there is none that shines.
+    #[inline]
+    pub fn choose(&self, u_select: f32) -> Option<(LightRef<'_>, f32, f32)> {
+        let (index, probability, rest) = self.choice.as_ref()?.sample(u_select);
+        let index = index as u32;
+        let lights = self;
+        Some((LightRef { lights, index }, probability, rest))
     }
 
     /// The density \[sr⁻¹] with which [`Lights::sample`] at `from` chooses the direction `wi` by way of the emissive instance
@@ -161,20 +182,31 @@ impl Lights {
         }
     }
 
-    /// The density \[sr⁻¹] with which [`Lights::sample`] chooses the direction `wi` by way of the environment.
-    pub fn pdf_environment(&self, wi: Vec3<f32>) -> f32 {
+    /// The density \[sr⁻¹] with which [`Lights::sample`] at `from` chooses the direction `wi` by way of the environment.
+    pub fn pdf_environment(&self, from: Vec3<f32>, wi: Vec3<f32>) -> f32 {
         match (self.environment, self.environment()) {
-            (Some(index), Some(e)) => self.probability(index) * e.pdf(wi),
+            (Some(index), Some(e)) => self.probability(index) * e.pdf_from(from, wi),
             _ => 0.0,
         }
     }
 
-    /// The environment's radiance \[W m⁻² sr⁻¹] from `wi` together with [`Lights::pdf_environment`], for less than both cost;
-    /// zeros without an environment.
-    pub fn environment_radiance_and_pdf(&self, wi: Vec3<f32>) -> ([f32; 3], f32) {
+    /// The environment's radiance \[W m⁻² sr⁻¹] from `wi` at `from`, together with [`Lights::pdf_environment`], for less than both
+    /// cost; zeros without an environment.
+    pub fn environment_radiance_and_pdf(&self, from: Vec3<f32>, wi: Vec3<f32>) -> ([f32; 3], f32) {
+        self.environment_radiance_and_pdf_by(Guide::Luminance, from, wi)
+    }
+
+    /// As [`Lights::environment_radiance_and_pdf`], with the density of [`Lights::sample_by`].
+    #[inline]
+    pub fn environment_radiance_and_pdf_by(
+        &self,
+        guide: Guide,
+        from: Vec3<f32>,
+        wi: Vec3<f32>,
+    ) -> ([f32; 3], f32) {
         match (self.environment, self.environment()) {
             (Some(index), Some(e)) => {
-                let (radiance, pdf) = e.radiance_and_pdf(wi);
+                let (radiance, pdf) = e.radiance_and_pdf_from_by(guide, from, wi);
                 (radiance, self.probability(index) * pdf)
             }
             _ => ([0.0; 3], 0.0),
@@ -191,6 +223,7 @@ impl Lights {
     /// A direction towards a given light; its pdf is without the probability of the choice.
     fn sample_one(
         &self,
+        guide: Guide,
         index: u32,
         from: &SurfacePoint,
         u_select: f32,
@@ -199,7 +232,7 @@ impl Lights {
         let light = &self.lights[index as usize];
         let found = match (light, &self.emitters[index as usize]) {
             (Light::Environment(e), _) => {
-                let s = e.sample(u);
+                let s = e.sample_from_by(guide, from.p, u);
                 LightSample {
                     wi: s.wi,
                     target: LightTarget::Infinite,
@@ -247,7 +280,18 @@ impl<'a> LightRef<'a> {
     ///
     /// - `u_select`, `u`: uniform in \[0, 1), independent; unused for a delta light
     pub fn sample(&self, from: &SurfacePoint, u_select: f32, u: [f32; 2]) -> Option<LightSample> {
-        self.lights.sample_one(self.index, from, u_select, u)
+        self.sample_by(Guide::Luminance, from, u_select, u)
+    }
+
+    /// As [`LightRef::sample`], with the environment sampled by `guide`.
+    pub fn sample_by(
+        &self,
+        guide: Guide,
+        from: &SurfacePoint,
+        u_select: f32,
+        u: [f32; 2],
+    ) -> Option<LightSample> {
+        self.lights.sample_one(guide, self.index, from, u_select, u)
     }
 
     /// The density \[sr⁻¹] with which [`LightRef::sample`] at `from` chooses the direction to `hit`; 0 if `hit` is no point of

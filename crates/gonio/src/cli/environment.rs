@@ -2,18 +2,21 @@
 
 use super::failure::Failure;
 use super::parse;
-use gonio_env::{Environment, Layout};
+use gonio_env::{Environment, Layout, Proxy};
 use gonio_scene::{LoadOptions, Scene};
 
 /// Which light comes from infinitely far away.
 #[derive(clap::Args)]
 pub(super) struct EnvironmentArguments {
-    /// Light from infinitely far away: a panorama (.hdr, .exr, .png, .jpg, .ktx2, .dds; or a folder of faces), or uniform:RADIANCE
+    /// Light from infinitely far away: a panorama (.hdr, .exr, .png, .jpg, .ktx2, .dds; or a folder of faces), uniform:RADIANCE, or sky:DATE@LATITUDE,LONGITUDE
     #[arg(long, value_name = "FILE")]
     env: Option<String>,
     /// Turn the environment about the vertical, counter-clockwise seen from above
     #[arg(long, value_name = "DEG", default_value = "0", value_parser = parse::finite, allow_hyphen_values = true)]
     env_rotate: f32,
+    /// The room around the panorama: box:X0,Y0,Z0,X1,Y1,Z1 or sphere:X,Y,Z,RADIUS, then @X,Y,Z where it was taken [default: the centre]
+    #[arg(long, value_name = "PROXY", value_parser = proxy, allow_hyphen_values = true)]
+    env_proxy: Option<Proxy>,
     #[command(flatten)]
     reading: PanoramaArguments,
 }
@@ -39,7 +42,7 @@ impl EnvironmentArguments {
     pub fn apply(&self, scene: &mut Scene) -> Result<(), Failure> {
         if let Some(environment) = self.load()? {
             scene.set_environment(Some(environment));
-        } else if self.env_rotate != 0.0
+        } else if (self.env_rotate != 0.0 || self.env_proxy.is_some())
             && let Some(environment) = scene.lights.environment().cloned()
         {
             scene.set_environment(Some(self.turned(environment)));
@@ -49,10 +52,15 @@ impl EnvironmentArguments {
         Ok(())
     }
 
-    /// `environment`, turned as asked.
+    /// `environment`, turned and in its room as asked.
     pub fn turned(&self, environment: Environment) -> Environment {
-        environment.rotated_deg(self.env_rotate)
+        let proxy = self.env_proxy.or(environment.proxy().copied());
+        environment.rotated_deg(self.env_rotate).with_proxy(proxy)
     }
+}
+
+fn proxy(text: &str) -> Result<Proxy, String> {
+    text.parse().map_err(|e: gonio_env::EnvError| e.to_string())
 }
 
 /// The warning that texels of a panorama are not what its file says.
@@ -84,7 +92,7 @@ pub(super) struct PanoramaArguments {
 }
 
 impl PanoramaArguments {
-    /// The environment that `text` names: a file, or uniform:RADIANCE.
+    /// The environment that `text` names: a file, uniform:RADIANCE, or sky:….
     pub fn parse(&self, text: &str) -> Result<Environment, Failure> {
         let layout = match &self.env_layout {
             None => None,

@@ -137,9 +137,10 @@ impl From<EnvError> for Failure {
             EnvError::Image(e) => e.into(),
             EnvError::UnknownLayout { .. }
             | EnvError::UnknownConvention { .. }
-            | EnvError::Parameter { .. } => Self::usage(message).with_help(
-                help.unwrap_or("an environment is a picture, uniform:1 or uniform:r/g/b".into()),
-            ),
+            | EnvError::UnknownWord { .. }
+            | EnvError::Parameter { .. } => Self::usage(message).with_help(help.unwrap_or(
+                "an environment is a picture, uniform:1, uniform:r/g/b or sky:elevation=40".into(),
+            )),
             EnvError::NotFound { file, suggestion } => match (suggestion, nearest_file(&file)) {
                 (None, Some(near)) => Self::input(message).with_help(did_you_mean(&near)),
                 _ => Self {

@@ -110,7 +110,7 @@ impl Source {
     fn options(&self) -> SensorOptions {
         SensorOptions {
             integrator: if self.direct {
-                Integrator::Direct(Direct)
+                Integrator::Direct(Direct::default())
             } else {
                 Integrator::Path(PathTracer::default())
             },

@@ -9,9 +9,10 @@ use super::summary::Summary;
 use super::terminal::{note, print, print_json, warn};
 use crate::preview;
 use gonio_brdf::ModelSpec;
+use gonio_env::Candidates;
 use gonio_image::tonemap::ToneMap;
 use gonio_radiometry::sequence::SamplerKind;
-use gonio_render::integrator::{Direct, Path as PathTracer};
+use gonio_render::integrator::{Direct, EnvironmentSampling, Path as PathTracer};
 use gonio_render::{Film, Integrator, PixelFilter, Progress, RenderOptions, Stop, Target};
 use gonio_scene::{Camera, LoadOptions, Scene, SceneError};
 use std::ops::ControlFlow;
@@ -79,6 +80,13 @@ pub(super) struct Arguments {
     /// How the reflection equation is solved: over many reflections (path), or over one (direct)
     #[arg(long, value_enum, value_name = "NAME", default_value_t = IntegratorName::Path, help_heading = "Method")]
     integrator: IntegratorName,
+    /// How light from the environment is sampled: by luminance, by what exceeds its mean (compensated), by luminance × cosine, or by
+    /// luminance × reflection × cosine (product)
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = EnvSamplingName::Luminance, help_heading = "Method")]
+    env_sampling: EnvSamplingName,
+    /// Candidates of the product, from the light and as many from the reflection function
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = parse::whole(1, 256), allow_hyphen_values = true, help_heading = "Method")]
+    env_candidates: u32,
     /// Reflections that light may make, passages through surfaces included, for the path integrator
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = parse::whole(0, u32::MAX), allow_hyphen_values = true, help_heading = "Method")]
     max_bounces: u32,
@@ -100,6 +108,14 @@ pub(super) struct Arguments {
 enum IntegratorName {
     Path,
     Direct,
+}
+
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum EnvSamplingName {
+    Luminance,
+    Compensated,
+    Cosine,
+    Product,
 }
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
@@ -290,9 +306,12 @@ fn options(arguments: &Arguments, scene: &Scene) -> RenderOptions {
             noise: arguments.noise,
         },
         integrator: match arguments.integrator {
-            IntegratorName::Direct => Integrator::Direct(Direct),
+            IntegratorName::Direct => Integrator::Direct(Direct {
+                environment: environment_sampling(arguments),
+            }),
             IntegratorName::Path => Integrator::Path(PathTracer {
                 max_bounces: arguments.max_bounces,
+                environment: environment_sampling(arguments),
                 ..PathTracer::default()
             }),
         },
@@ -302,6 +321,18 @@ fn options(arguments: &Arguments, scene: &Scene) -> RenderOptions {
         },
         filter: arguments.filter,
         seed: arguments.seed,
+    }
+}
+
+fn environment_sampling(arguments: &Arguments) -> EnvironmentSampling {
+    match arguments.env_sampling {
+        EnvSamplingName::Luminance => EnvironmentSampling::Luminance,
+        EnvSamplingName::Compensated => EnvironmentSampling::Compensated,
+        EnvSamplingName::Cosine => EnvironmentSampling::Cosine,
+        EnvSamplingName::Product => EnvironmentSampling::Product(Candidates {
+            light: arguments.env_candidates,
+            reflection: arguments.env_candidates,
+        }),
     }
 }
 

@@ -374,7 +374,7 @@ fn sampled_and_found_densities_agree() {
                     assert_eq!(scene.emitted(&hit, -s.wi), s.radiance);
                     scene.lights.pdf_area(from.p, &hit, s.wi)
                 }
-                (None, LightTarget::Infinite) => scene.lights.pdf_environment(s.wi),
+                (None, LightTarget::Infinite) => scene.lights.pdf_environment(from.p, s.wi),
                 // Past the rim of the light by rounding, or on its far side.
                 _ => continue,
             };
@@ -410,7 +410,7 @@ fn lights_without_power_are_never_chosen() {
             .sample(&here(Vec3::zero()), 0.3, [0.5; 2])
             .is_none()
     );
-    assert_eq!(scene.lights.pdf_environment(UP), 0.0);
+    assert_eq!(scene.lights.pdf_environment(Vec3::zero(), UP), 0.0);
 }
 
 /// Against a surface that is no light, or whose instance doesn't exist.

@@ -6,7 +6,7 @@ use super::view::refuse;
 use crate::SceneError;
 use crate::light::{Light, SpotCone};
 use crate::{LoadOptions, SceneBuilder};
-use gonio_env::{Convention, Environment, Layout};
+use gonio_env::{Convention, Environment, Layout, Proxy, Sky};
 use gonio_num::Vec3;
 use std::path::Path;
 
@@ -131,10 +131,12 @@ pub(super) fn environment(
     let keys = [
         "file",
         "uniform",
+        "sky",
         "layout",
         "convention",
         "rotate_deg",
         "scale",
+        "proxy",
     ];
     let section = Section::new(source, "[environment]", value, &keys)?;
     let layouts = Layout::ALL.map(|layout| (layout.name(), layout));
@@ -143,23 +145,42 @@ pub(super) fn environment(
         section.choice("layout", &layouts)?,
         section.choice("convention", &conventions)?,
     );
-    let mut made = match (section.path("file")?, section.colour("uniform")?) {
-        (Some(path), None) => panorama(&path, turned, options)
+    let sky = section.text("sky")?;
+    let mut made = match (section.path("file")?, section.colour("uniform")?, sky) {
+        (Some(path), None, None) => panorama(&path, turned, options)
             .map_err(|(message, help)| section.error_at("file", message, help))?,
-        (None, Some(radiance)) => {
+        (None, Some(radiance), None) => {
             refuse(&section, "layout", "a uniform environment has none")?;
             refuse(&section, "convention", "a uniform environment has none")?;
             Environment::uniform(radiance)
         }
-        (None, None) => return Err(section.error("[environment] needs `file` or `uniform`", None)),
-        (Some(_), Some(_)) => {
-            return Err(section.error_at(
-                "uniform",
-                "[environment] has both `file` and `uniform`",
-                None,
-            ));
+        (None, None, Some(words)) => {
+            refuse(&section, "layout", "a sky has none")?;
+            refuse(&section, "convention", "a sky has none")?;
+            let sky = words.parse().and_then(Sky::new);
+            Environment::from_sky(
+                sky.map_err(|e| section.error_at("sky", e.to_string(), e.help()))?,
+            )
+        }
+        (None, None, None) => {
+            let message = "[environment] needs `file`, `uniform` or `sky`";
+            return Err(section.error(message, None));
+        }
+        (file, uniform, sky) => {
+            let both = match (file, uniform, sky) {
+                (Some(_), Some(_), _) => ["file", "uniform"],
+                (Some(_), ..) => ["file", "sky"],
+                _ => ["uniform", "sky"],
+            };
+            let message = format!("[environment] has both `{}` and `{}`", both[0], both[1]);
+            return Err(section.error_at(both[1], message, None));
         }
     };
+    if let Some(words) = section.text("proxy")? {
+        let proxy = words.parse::<Proxy>();
+        let proxy = proxy.map_err(|e| section.error_at("proxy", e.to_string(), e.help()))?;
+        made = made.with_proxy(Some(proxy));
+    }
     if let Some(yaw) = section.number("rotate_deg")? {
         made = made.rotated_deg(yaw as f32);
     }

@@ -234,7 +234,19 @@ fn wrong_values_are_shown() {
         ("[environment]\nfile = \"gone.hdr\"\n", "gone.hdr"),
         (
             "[environment]\nrotate_deg = 4\n",
-            "needs `file` or `uniform`",
+            "needs `file`, `uniform` or `sky`",
+        ),
+        (
+            "[environment]\nsky = \"elevation=20,turbidity=30\"\n",
+            "turbidity = 30, expected a number from 1 to 10",
+        ),
+        (
+            "[environment]\nuniform = 1\nsky = \"elevation=20\"\n",
+            "both `uniform` and `sky`",
+        ),
+        (
+            "[environment]\nuniform = 1\nproxy = \"box:0,0,0\"\n",
+            "box:X0,Y0,Z0,X1,Y1,Z1",
         ),
         ("[environment]\nuniform = -1\n", "none below 0"),
         ("[environment]\nuniform = 1\nfile = \"red.png\"\n", "both"),

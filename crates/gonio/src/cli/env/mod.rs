@@ -3,6 +3,7 @@
 mod capture;
 mod convert;
 mod info;
+mod sky;
 
 use super::failure::Failure;
 
@@ -17,6 +18,8 @@ pub(super) enum Command {
     Info(info::Arguments),
     /// Another layout, size, orientation or file format, with the flux kept
     Convert(Box<convert::Arguments>),
+    /// Sun and sky over a place at a time, as a panorama
+    Sky(sky::Arguments),
 }
 
 pub(super) fn run(command: Command) -> Result<(), Failure> {
@@ -24,5 +27,6 @@ pub(super) fn run(command: Command) -> Result<(), Failure> {
         Command::Capture(arguments) => capture::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Convert(arguments) => convert::run(*arguments),
+        Command::Sky(arguments) => sky::run(&arguments),
     }
 }
