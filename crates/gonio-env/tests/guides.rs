@@ -114,7 +114,11 @@ fn follows(env: &Environment, guide: Guide, name: &str, tests: u64) {
     );
     let scaled = |tilt: f64| -> Vec<f64> {
         let factor = |k: usize| {
-            if k % 2 == 0 { 1.0 + tilt } else { 1.0 - tilt }
+            if k.is_multiple_of(2) {
+                1.0 + tilt
+            } else {
+                1.0 - tilt
+            }
         };
         let raw: Vec<f64> = expected
             .iter()

@@ -86,6 +86,7 @@ fn light_and_view_within_a_body_are_absorbed() {
     let two = Integrator::Path(Path {
         max_bounces: 2,
         roulette_after: 4,
+        ..Path::default()
     });
     let above = Vec3::new(0.0, 1.0, 0.0);
     let passes = (1.0 - reflectance(1.0, n)) / (n * n);
@@ -97,6 +98,7 @@ fn light_and_view_within_a_body_are_absorbed() {
     let one = Integrator::Path(Path {
         max_bounces: 1,
         roulette_after: 4,
+        ..Path::default()
     });
     for integrator in [one, INTEGRATORS[0]] {
         for c in [0.25_f64, 1.75] {
@@ -130,6 +132,7 @@ fn a_veil_within_a_body_leaves_its_absorption() {
     let one = Integrator::Path(Path {
         max_bounces: 1,
         roulette_after: 4,
+        ..Path::default()
     });
     for integrator in [one, INTEGRATORS[0]] {
         let eye = Vec3::new(0.0, (c - 2.0) as f32, 0.0);
@@ -234,6 +237,7 @@ fn a_ray_that_passes_by_opacity_enters_the_body() {
     let one = Integrator::Path(Path {
         max_bounces: 1,
         roulette_after: 4,
+        ..Path::default()
     });
     for integrator in [one, INTEGRATORS[0]] {
         let reading = along(&scene, Vec3::new(0.0, 4.0, 0.0), DOWN, integrator);

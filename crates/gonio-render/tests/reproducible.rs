@@ -179,6 +179,7 @@ fn agree_on(scene: &Scene) {
     let one = Integrator::Path(gonio_render::integrator::Path {
         max_bounces: 1,
         roulette_after: 4,
+        ..Path::default()
     });
     let shot = |integrator, seed| {
         let options = RenderOptions {

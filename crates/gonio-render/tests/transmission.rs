@@ -71,6 +71,7 @@ fn interpolated_normals_leak_no_light() {
     let all = Integrator::Path(Path {
         max_bounces: 256,
         roulette_after: u32::MAX,
+        ..Path::default()
     });
     for (rows, range) in [(4, 0.5..0.999), (32, 0.98..1.0 + ROUNDING)] {
         let mut scene = SceneBuilder::new("coarse");
@@ -122,6 +123,7 @@ fn roulette_is_not_confused_by_the_scaling_of_radiance() {
     let roulette = Integrator::Path(Path {
         max_bounces: 64,
         roulette_after: 0,
+        ..Path::default()
     });
     let reading = along(&scene, Vec3::new(0.0, 4.0, 0.0), DOWN, roulette);
     assert_is(&reading, 1.0);
@@ -337,6 +339,7 @@ fn light_from_both_sides_of_a_scattering_surface() {
             let one = Integrator::Path(Path {
                 max_bounces: 1,
                 roulette_after: 4,
+                ..Path::default()
             });
             for integrator in [one, INTEGRATORS[0]] {
                 let reading = along(&scene, from, from * -1.25, integrator);
