@@ -179,7 +179,7 @@ fn agree_on(scene: &Scene) {
     let one = Integrator::Path(gonio_render::integrator::Path {
         max_bounces: 1,
         roulette_after: 4,
-        ..Path::default()
+        ..gonio_render::integrator::Path::default()
     });
     let shot = |integrator, seed| {
         let options = RenderOptions {
