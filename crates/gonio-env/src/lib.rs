@@ -49,7 +49,7 @@ mod texels;
 pub use environment::{EnvSample, Environment};
 pub use error::EnvError;
 pub use info::{EnvInfo, Peak};
-pub use irradiance::Irradiance;
+pub use irradiance::{Irradiance, LatLongTexels};
 pub use load::LoadOptions;
 pub use panorama::{Conversion, Kept, Panorama};
 pub use product::{Candidates, ProductSample, Reflected};

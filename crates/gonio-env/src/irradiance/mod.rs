@@ -7,6 +7,9 @@
 
 mod disc;
 mod grid;
+mod texels;
+
+pub use texels::LatLongTexels;
 
 use crate::environment::{Environment, Source, yaw_sin_cos};
 use gonio_num::Vec3;
