@@ -17,7 +17,7 @@ use rayon::prelude::*;
 const ENTRIES: usize = 512;
 
 /// How coarse the cells may be: the error of a cell relative to the kernel there is about a 24th of its square, of either sign.
-pub const DEFAULT_TOLERANCE: f64 = 0.3;
+pub const DEFAULT_TOLERANCE: f64 = 0.6;
 
 /// Share of the kernel's mean over the hemisphere that is added to the kernel itself when an error is called small: light that
 /// the tail adds is small against the light of the lobe.

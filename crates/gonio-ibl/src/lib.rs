@@ -1,14 +1,18 @@
 //! Image-based light.
 #![allow(clippy::needless_range_loop)]
 pub mod cube;
+mod dfg;
 mod error;
 mod filter;
 mod gather;
+pub mod harmonics;
 mod kernel;
 mod nodes;
 mod reference;
+pub use dfg::Dfg;
 pub use error::IblError;
 pub use filter::{DEFAULT_TOLERANCE, Filter};
+pub use harmonics::Harmonics;
 pub use kernel::{Kernel, ModelKernel};
 pub use nodes::LightTree;
 pub use reference::reference;

@@ -57,10 +57,15 @@ impl LightTree {
             .map(|face| {
                 let mut sums = vec![[0.0; 7]; size * size];
                 for row in 0..points.rows() {
+                    if !points.may_meet(row, towards(face, 0.0, 0.0)) {
+                        continue;
+                    }
                     points.each_in_row(row, |d, w, rgb| {
-                        let (f, a, b) = place(d);
-                        if f == face {
-                            deposit(&mut sums, size, [a, b], d, w, rgb, dark);
+                        if meets(face, d) {
+                            let (f, a, b) = place(d);
+                            if f == face {
+                                deposit(&mut sums, size, [a, b], d, w, rgb, dark);
+                            }
                         }
                     });
                 }
@@ -124,22 +129,37 @@ impl LightTree {
     }
 }
 
-/// Edge of the finest cube, a power of two: as fine as the picture, but not finer than a quarter of the lobe needs.
+/// Edge of the finest cube, a power of two: as fine as the picture, but no finer than 0.4 of the lobe's width.
 fn size_for(picture: usize, width: f64) -> usize {
-    let needed = (0.5 * PI / (0.25 * width)).ceil() as usize;
+    let needed = (0.5 * PI / (0.4 * width)).ceil() as usize;
     picture.min(needed).next_power_of_two().clamp(16, LARGEST)
 }
 
 /// In how many parts each side of a texel is divided, so that a lobe of `width` sees no single points.
 ///
-/// A sum over a grid of step h misses the integral over a GGX lobe by about exp(−2π width/h): 1e-4 at width = 1.5 h.
+/// A sum over a grid of step h misses the integral over a GGX lobe by about exp(−2π width/h), and the interpolated picture by the
+/// bend of the lobe over h: both are below 1e-3 at width = 3 h.
 pub(crate) fn subdivision(texels: &LatLongTexels<'_>, width: f64) -> usize {
     let step = PI / texels.height.min(texels.width.div_ceil(2)) as f64;
-    ((1.5 * step / width).ceil() as usize).clamp(1, 8)
+    ((3.0 * step / width).ceil() as usize).clamp(1, 8)
 }
 
 pub(crate) fn luminance(rgb: [f64; 3]) -> f64 {
     0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
+}
+
+/// Whether a direction may meet a face: exactly, but for ties. Cheaper than [`place`].
+#[inline(always)]
+fn meets(face: usize, d: Vec3<f64>) -> bool {
+    let (along, p, q) = match face {
+        0 => (d.x, d.y, d.z),
+        1 => (-d.x, d.y, d.z),
+        2 => (d.y, d.x, d.z),
+        3 => (-d.y, d.x, d.z),
+        4 => (d.z, d.x, d.y),
+        _ => (-d.z, d.x, d.y),
+    };
+    along >= p.abs().max(q.abs())
 }
 
 /// Puts a point into its cell.
@@ -254,6 +274,15 @@ impl<'a> Points<'a> {
     /// Rows of points, from the zenith down.
     pub fn rows(&self) -> usize {
         self.texels.height * self.split
+    }
+
+    /// Whether any point of a row may meet the face around `axis`, which reaches to cos = 1/√3 from it.
+    pub fn may_meet(&self, row: usize, axis: Vec3<f64>) -> bool {
+        let theta = PI * (row as f64 + 0.5) / self.rows() as f64;
+        let rise = self.axes[1].dot(axis);
+        let nearest =
+            Real::cos(theta) * rise + Real::sin(theta) * (1.0 - rise * rise).max(0.0).sqrt();
+        nearest > 0.577
     }
 
     /// Calls `f` with the direction, solid angle and radiance of each point of a row.

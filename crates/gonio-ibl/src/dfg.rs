@@ -1,0 +1,148 @@
+//! Tables of how much a rough surface reflects: the second factor of the split sum.
+//!
+//! With Schlick's F = F₀ + (1 − F₀) Fc, Fc = (1 − cosθ′)⁵, the directional albedo is linear in F₀:
+//!
+//! ```text
+//! E(μ, roughness) = ∫ f cosθ dω = F₀ (whole − bias) + bias,    whole = ∫ f₁ cosθ dω,   bias = ∫ f₁ Fc cosθ dω
+//! ```
+//!
+//! f₁ the model with F = 1. Source: Karis 2013, "Real Shading in Unreal Engine 4"; the multiple-scattering form (bias, whole):
+//! Fdez-Agüera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image Based Lighting", and Filament.
+
+use crate::IblError;
+use gonio_brdf::batch::{self, Directions, Samples};
+use gonio_brdf::{Model, ModelSpec};
+use gonio_radiometry::quadrature::GaussLegendre;
+use rayon::prelude::*;
+
+/// A table over cosine and roughness.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dfg {
+    /// Columns: μ = n·v = (x + ½)/width.
+    pub width: usize,
+    /// Rows: perceptual roughness (y + ½)/height.
+    pub height: usize,
+    /// (bias, whole) of each entry, row after row from roughness 0.
+    pub values: Vec<[f32; 2]>,
+}
+
+/// Quadrature in the sampler's numbers, where the integrand is smooth: panels and nodes along the first, whose ends are crowded,
+/// and steps along the second, which turns around.
+const PANELS: usize = 3;
+const NODES: usize = 8;
+const TURNS: usize = 24;
+
+impl Dfg {
+    /// The table of a microfacet model, `model` naming it without roughness and reflectance: `ggx`, `beckmann`,
+    /// `torrance-sparrow:distribution=gtr,gamma=1.8,masking=smith`, `sheen-charlie`.
+    ///
+    /// For a model with Fresnel reflectance both columns have meaning; for sheen, which has none, `whole` is its albedo.
+    ///
+    /// # Errors
+    /// [`IblError::Model`] for a model without the parameter `roughness`; sizes that are 0 or above 4096.
+    pub fn new(model: &str, width: usize, height: usize) -> Result<Self, IblError> {
+        for (name, n) in [("table width", width), ("table height", height)] {
+            if !(1..=4096).contains(&n) {
+                return Err(IblError::parameter(name, n, "a whole number from 1 to 4096"));
+            }
+        }
+        let base = ModelSpec::parse(model)?;
+        let names: Vec<&str> = base.parameters()?.iter().map(|p| p.name).collect();
+        if !names.contains(&"roughness") {
+            return Err(IblError::Model {
+                model: model.to_owned(),
+                reason: "no parameter `roughness` to make a table over".to_owned(),
+            });
+        }
+        let rows: Result<Vec<Vec<[f32; 2]>>, IblError> = (0..height)
+            .into_par_iter()
+            .map(|y| {
+                let roughness = (y as f64 + 0.5) / height as f64;
+                let mut spec = base.clone();
+                spec.set_text("roughness", &roughness.to_string())?;
+                let own = |key: &str| base.values.contains_key(key);
+                if names.contains(&"f0") && !own("f0") && !own("fresnel") {
+                    spec.set_text("f0", "1")?;
+                }
+                if names.contains(&"interreflection") && !own("interreflection") {
+                    spec.set_text("interreflection", "none")?;
+                }
+                Ok(row(&spec.build()?, width))
+            })
+            .collect();
+        Ok(Self {
+            width,
+            height,
+            values: rows?.into_iter().flatten().collect(),
+        })
+    }
+
+    /// (bias, whole) at column x, row y.
+    ///
+    /// # Panics
+    /// Outside the table.
+    pub fn get(&self, x: usize, y: usize) -> [f32; 2] {
+        assert!(x < self.width && y < self.height, "entry outside the table");
+        self.values[y * self.width + x]
+    }
+}
+
+/// The nodes: u₀, u₁ in [0, 1)² and weights whose sum is 1.
+fn nodes() -> (Vec<f32>, Vec<f32>, Vec<f64>) {
+    let rule = GaussLegendre::new(NODES);
+    let (mut u0, mut u1, mut weights) = (Vec::new(), Vec::new(), Vec::new());
+    // s ↦ s² (3 − 2s) crowds nodes at both ends, where a sampler's map has its steep places.
+    for panel in 0..PANELS {
+        let (a, b) = (panel as f64 / PANELS as f64, (panel + 1) as f64 / PANELS as f64);
+        for (s, w) in rule.on(a, b) {
+            for k in 0..TURNS {
+                u0.push((s * s * (3.0 - 2.0 * s)) as f32);
+                u1.push(((k as f64 + 0.5) / TURNS as f64) as f32);
+                weights.push(w * 6.0 * s * (1.0 - s) / TURNS as f64);
+            }
+        }
+    }
+    (u0, u1, weights)
+}
+
+fn row(model: &Model<f32, 3>, width: usize) -> Vec<[f32; 2]> {
+    let (u0, u1, weights) = nodes();
+    let n = weights.len();
+    // Half of the numbers that choose a part for each: they are strata of it.
+    let u2: Vec<f32> = (0..n).map(|i| (i % 8) as f32 / 8.0 + 0.0625).collect();
+    let mut wi = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+    let mut weight = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
+    let mut pdf = vec![0.0; n];
+    let mut delta = vec![false; n];
+    let zero = vec![0.0; n];
+    (0..width)
+        .map(|x| {
+            let mu = (x as f64 + 0.5) / width as f64;
+            let sin = (1.0 - mu * mu).sqrt();
+            let (wx, wz) = (vec![sin as f32; n], vec![mu as f32; n]);
+            let [x0, x1, x2] = &mut wi;
+            let [a, b, c] = &mut weight;
+            batch::sample(
+                model,
+                Directions { x: &wx, y: &zero, z: &wz },
+                [&u0, &u1, &u2],
+                Samples {
+                    wi: [x0, x1, x2],
+                    weight: [a, b, c],
+                    pdf: &mut pdf,
+                    delta: &mut delta,
+                },
+            );
+            let (mut bias, mut whole) = (0.0, 0.0);
+            for i in 0..n {
+                let f = weights[i] * f64::from(weight[0][i]);
+                let cos = f64::from(wi[0][i]) * sin + f64::from(wi[2][i]) * mu;
+                // cos²θ′ = (1 + ωi·ωr)/2.
+                let facet = (0.5 * (1.0 + cos)).clamp(0.0, 1.0).sqrt();
+                whole += f;
+                bias += f * (1.0 - facet).powi(5);
+            }
+            [bias as f32, whole as f32]
+        })
+        .collect()
+}
