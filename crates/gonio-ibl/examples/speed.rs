@@ -37,7 +37,12 @@ fn main() {
         .nth(1)
         .map_or(DEFAULT_TOLERANCE, |a| a.parse().unwrap());
     let t = Instant::now();
-    let tree = LightTree::new(&env, std::env::args().nth(2).map_or(0.0083, |a| a.parse().unwrap()));
+    let tree = LightTree::new(
+        &env,
+        std::env::args()
+            .nth(2)
+            .map_or(0.0083, |a| a.parse().unwrap()),
+    );
     println!("tree {:?} {}", t.elapsed(), tree.size());
     for level in 1..9 {
         let p = 1.0 - (1.0 - level as f64 / 8.0f64).sqrt();

@@ -43,7 +43,11 @@ impl Dfg {
     pub fn new(model: &str, width: usize, height: usize) -> Result<Self, IblError> {
         for (name, n) in [("table width", width), ("table height", height)] {
             if !(1..=4096).contains(&n) {
-                return Err(IblError::parameter(name, n, "a whole number from 1 to 4096"));
+                return Err(IblError::parameter(
+                    name,
+                    n,
+                    "a whole number from 1 to 4096",
+                ));
             }
         }
         let base = ModelSpec::parse(model)?;
@@ -93,7 +97,10 @@ fn nodes() -> (Vec<f32>, Vec<f32>, Vec<f64>) {
     let (mut u0, mut u1, mut weights) = (Vec::new(), Vec::new(), Vec::new());
     // s ↦ s² (3 − 2s) crowds nodes at both ends, where a sampler's map has its steep places.
     for panel in 0..PANELS {
-        let (a, b) = (panel as f64 / PANELS as f64, (panel + 1) as f64 / PANELS as f64);
+        let (a, b) = (
+            panel as f64 / PANELS as f64,
+            (panel + 1) as f64 / PANELS as f64,
+        );
         for (s, w) in rule.on(a, b) {
             for k in 0..TURNS {
                 u0.push((s * s * (3.0 - 2.0 * s)) as f32);
@@ -124,7 +131,11 @@ fn row(model: &Model<f32, 3>, width: usize) -> Vec<[f32; 2]> {
             let [a, b, c] = &mut weight;
             batch::sample(
                 model,
-                Directions { x: &wx, y: &zero, z: &wz },
+                Directions {
+                    x: &wx,
+                    y: &zero,
+                    z: &wz,
+                },
                 [&u0, &u1, &u2],
                 Samples {
                     wi: [x0, x1, x2],

@@ -27,7 +27,7 @@ pub fn reference(
     let sums = match environment.lat_long_texels() {
         Some(texels) => {
             // Twice as fine as what the tree is made of, so that its points are checked as well.
-            let split = (2 * subdivision(&texels, kernel.width())).min(8);
+            let split = subdivision(&texels, 0.5 * kernel.width());
             let points = Points::new(&texels, split);
             let chunks = points.rows().div_ceil(ROWS);
             let fill = |chunk: usize, lights: &mut Lights| {

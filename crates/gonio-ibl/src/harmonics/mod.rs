@@ -16,6 +16,7 @@
 mod panorama;
 mod window;
 
+pub(crate) use window::directions as even_directions;
 pub use window::{Residual, Window};
 
 use crate::IblError;
@@ -86,7 +87,9 @@ pub fn cosine_factor(l: usize) -> f64 {
         l => {
             // l!/(2^l ((l/2)!)²) is the product of (2k − 1)/2k for k = 1 … l/2.
             let half = l / 2;
-            let product: f64 = (1..=half).map(|k| (2 * k - 1) as f64 / (2 * k) as f64).product();
+            let product: f64 = (1..=half)
+                .map(|k| (2 * k - 1) as f64 / (2 * k) as f64)
+                .product();
             let sign = if half % 2 == 1 { 1.0 } else { -1.0 };
             sign * 2.0 * PI / ((l + 2) as f64 * (l - 1) as f64) * product
         }
@@ -108,7 +111,10 @@ impl Harmonics {
             ));
         }
         check_bands(bands)?;
-        Ok(Self { bands, coefficients })
+        Ok(Self {
+            bands,
+            coefficients,
+        })
     }
 
     /// The radiance of an environment. A panorama is integrated exactly, as it is interpolated; another picture as the points of
@@ -133,7 +139,10 @@ impl Harmonics {
                 }
             }
         }
-        Ok(Self { bands, coefficients })
+        Ok(Self {
+            bands,
+            coefficients,
+        })
     }
 
     /// The coefficients of any function of at most `bands` bands, by a quadrature that is exact for it.
@@ -202,7 +211,11 @@ fn check_bands(bands: usize) -> Result<(), IblError> {
     if (1..=MOST_BANDS).contains(&bands) {
         return Ok(());
     }
-    Err(IblError::parameter("bands", bands, "a whole number from 1 to 10"))
+    Err(IblError::parameter(
+        "bands",
+        bands,
+        "a whole number from 1 to 10",
+    ))
 }
 
 #[cfg(test)]
@@ -240,14 +253,25 @@ mod tests {
             });
             for (k, v) in all.iter().enumerate() {
                 // Sums of 200 products of size 1.
-                assert!((v - f64::from(u8::from(k == i))).abs() < 1e-12, "{i} {k}: {v}");
+                assert!(
+                    (v - f64::from(u8::from(k == i))).abs() < 1e-12,
+                    "{i} {k}: {v}"
+                );
             }
         }
     }
 
     #[test]
     fn cosine_factors_are_those_of_the_paper() {
-        let expected = [PI, 2.0 * PI / 3.0, PI / 4.0, 0.0, -PI / 24.0, 0.0, PI / 64.0];
+        let expected = [
+            PI,
+            2.0 * PI / 3.0,
+            PI / 4.0,
+            0.0,
+            -PI / 24.0,
+            0.0,
+            PI / 64.0,
+        ];
         for (l, e) in expected.into_iter().enumerate() {
             assert!((cosine_factor(l) - e).abs() < 1e-15, "{l}");
         }

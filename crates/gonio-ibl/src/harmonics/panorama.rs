@@ -21,7 +21,11 @@ pub(super) fn project(texels: &LatLongTexels<'_>, bands: usize) -> Harmonics {
     let local = project_local(texels, bands);
     // In the picture's own frame the polar axis is +y, φ = 0 looks along −z and φ = 90° along +x.
     let axis = |x: f64, y: f64, z: f64| texels.to_world(Vec3::new(x, y, z));
-    let (x, y, z) = (axis(0.0, 0.0, -1.0), axis(1.0, 0.0, 0.0), axis(0.0, 1.0, 0.0));
+    let (x, y, z) = (
+        axis(0.0, 0.0, -1.0),
+        axis(1.0, 0.0, 0.0),
+        axis(0.0, 1.0, 0.0),
+    );
     Harmonics::of_function(bands, |d| {
         let d = Vec3::new(d.dot(x), d.dot(y), d.dot(z));
         local.evaluate(d)
@@ -95,7 +99,10 @@ fn project_local(texels: &LatLongTexels<'_>, bands: usize) -> Harmonics {
             c[k] *= f64::from(texels.scale[k]);
         }
     }
-    Harmonics { bands, coefficients }
+    Harmonics {
+        bands,
+        coefficients,
+    }
 }
 
 #[inline(always)]

@@ -111,7 +111,11 @@ impl Window {
         let whole = energy(f.coefficients());
         let residual = Residual {
             largest: largest / mean,
-            rms: if whole > 0.0 { (energy(&differences) / whole).sqrt() } else { 0.0 },
+            rms: if whole > 0.0 {
+                (energy(&differences) / whole).sqrt()
+            } else {
+                0.0
+            },
             smallest_before: smallest(f) / mean,
             smallest_after: smallest(&windowed) / mean,
             lambda,
