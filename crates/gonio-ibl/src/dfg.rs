@@ -41,6 +41,18 @@ impl Dfg {
     /// # Errors
     /// [`IblError::Model`] for a model without the parameter `roughness`; sizes that are 0 or above 4096.
     pub fn new(model: &str, width: usize, height: usize) -> Result<Self, IblError> {
+        let cosines: Vec<f64> = (0..width)
+            .map(|x| (x as f64 + 0.5) / width as f64)
+            .collect();
+        Self::at(model, &cosines, height)
+    }
+
+    /// The table whose columns are at these cosines, each in (0, 1].
+    ///
+    /// # Errors
+    /// As [`Dfg::new`].
+    pub fn at(model: &str, cosines: &[f64], height: usize) -> Result<Self, IblError> {
+        let width = cosines.len();
         for (name, n) in [("table width", width), ("table height", height)] {
             if !(1..=4096).contains(&n) {
                 return Err(IblError::parameter(
@@ -49,6 +61,9 @@ impl Dfg {
                     "a whole number from 1 to 4096",
                 ));
             }
+        }
+        if let Some(bad) = cosines.iter().find(|c| !(**c > 0.0 && **c <= 1.0)) {
+            return Err(IblError::parameter("cosine", bad, "a number in (0, 1]"));
         }
         let base = ModelSpec::parse(model)?;
         let names: Vec<&str> = base.parameters()?.iter().map(|p| p.name).collect();
@@ -71,7 +86,7 @@ impl Dfg {
                 if names.contains(&"interreflection") && !own("interreflection") {
                     spec.set_text("interreflection", "none")?;
                 }
-                Ok(row(&spec.build()?, width))
+                Ok(row(&spec.build()?, cosines))
             })
             .collect();
         Ok(Self {
@@ -112,7 +127,7 @@ fn nodes() -> (Vec<f32>, Vec<f32>, Vec<f64>) {
     (u0, u1, weights)
 }
 
-fn row(model: &Model<f32, 3>, width: usize) -> Vec<[f32; 2]> {
+fn row(model: &Model<f32, 3>, cosines: &[f64]) -> Vec<[f32; 2]> {
     let (u0, u1, weights) = nodes();
     let n = weights.len();
     // Half of the numbers that choose a part for each: they are strata of it.
@@ -122,9 +137,9 @@ fn row(model: &Model<f32, 3>, width: usize) -> Vec<[f32; 2]> {
     let mut pdf = vec![0.0; n];
     let mut delta = vec![false; n];
     let zero = vec![0.0; n];
-    (0..width)
-        .map(|x| {
-            let mu = (x as f64 + 0.5) / width as f64;
+    cosines
+        .iter()
+        .map(|&mu| {
             let sin = (1.0 - mu * mu).sqrt();
             let (wx, wz) = (vec![sin as f32; n], vec![mu as f32; n]);
             let [x0, x1, x2] = &mut wi;

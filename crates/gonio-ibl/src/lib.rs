@@ -1,5 +1,6 @@
 //! Image-based light.
 #![allow(clippy::needless_range_loop)]
+pub mod bundle;
 pub mod cube;
 mod dfg;
 mod error;

@@ -110,7 +110,7 @@ impl Harmonics {
                 "1, 4, 9, … 100 of them",
             ));
         }
-        check_bands(bands)?;
+        Self::check_bands(bands)?;
         Ok(Self {
             bands,
             coefficients,
@@ -123,7 +123,7 @@ impl Harmonics {
     /// # Errors
     /// If `bands` is 0 or above [`MOST_BANDS`].
     pub fn of_radiance(environment: &Environment, bands: usize) -> Result<Self, IblError> {
-        check_bands(bands)?;
+        Self::check_bands(bands)?;
         if let Some(texels) = environment.lat_long_texels() {
             return Ok(panorama::project(&texels, bands));
         }
@@ -166,6 +166,21 @@ impl Harmonics {
         }
     }
 
+    /// Whether there can be so many bands.
+    ///
+    /// # Errors
+    /// If `bands` is 0 or above [`MOST_BANDS`].
+    pub fn check_bands(bands: usize) -> Result<(), IblError> {
+        if (1..=MOST_BANDS).contains(&bands) {
+            return Ok(());
+        }
+        Err(IblError::parameter(
+            "bands",
+            bands,
+            "a whole number from 1 to 10",
+        ))
+    }
+
     /// How many bands.
     pub fn bands(&self) -> usize {
         self.bands
@@ -205,17 +220,6 @@ impl Harmonics {
     pub fn irradiance(&self) -> Self {
         self.scaled(cosine_factor)
     }
-}
-
-fn check_bands(bands: usize) -> Result<(), IblError> {
-    if (1..=MOST_BANDS).contains(&bands) {
-        return Ok(());
-    }
-    Err(IblError::parameter(
-        "bands",
-        bands,
-        "a whole number from 1 to 10",
-    ))
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use gonio_brdf::BrdfError;
 use gonio_capture::CaptureError;
 use gonio_env::EnvError;
 use gonio_exec::{ExecError, Fault};
+use gonio_ibl::IblError;
 use gonio_image::ImageError;
 use gonio_render::RenderError;
 use gonio_scene::SceneError;
@@ -201,6 +202,22 @@ impl From<BrdfError> for Failure {
                 .with_help(help.unwrap_or(format!("see 'gonio brdf show {model}'"))),
             _ => Self::usage(message)
                 .with_help(help.unwrap_or("'gonio brdf list' names the models".into())),
+        }
+    }
+}
+
+impl From<IblError> for Failure {
+    fn from(error: IblError) -> Self {
+        let message = chain(&error);
+        let help = error.help();
+        match error {
+            IblError::Environment(e) => e.into(),
+            IblError::Brdf(e) => e.into(),
+            IblError::Image(e) => e.into(),
+            IblError::Parameter { .. } | IblError::Model { .. } => {
+                Self::usage(message).with_help(help.unwrap_or("--help explains each option".into()))
+            }
+            _ => Self::input(message).with_help(help.unwrap_or("write elsewhere".into())),
         }
     }
 }
