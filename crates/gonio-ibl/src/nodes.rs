@@ -34,6 +34,9 @@ pub(crate) struct Level {
 /// Sums of a cell: solid angle, flux of each channel, Σ weight · direction.
 type Sums = [f32; 7];
 
+/// Columns of points at most, unless the picture itself has more: 8192 stand 8e-4 rad apart.
+const MOST_COLUMNS: usize = 8192;
+
 /// Share of the mean luminance that a black point still has in the place of its cell.
 const DARK_SHARE: f64 = 1e-3;
 
@@ -141,7 +144,7 @@ fn size_for(picture: usize, width: f64) -> usize {
 /// bend of the lobe over h: both are below 1e-3 at width = 3 h.
 pub(crate) fn subdivision(texels: &LatLongTexels<'_>, width: f64) -> usize {
     let step = PI / texels.height.min(texels.width.div_ceil(2)) as f64;
-    ((3.0 * step / width).ceil() as usize).clamp(1, 8)
+    ((3.0 * step / width).ceil() as usize).clamp(1, (MOST_COLUMNS / texels.width).max(1))
 }
 
 pub(crate) fn luminance(rgb: [f64; 3]) -> f64 {

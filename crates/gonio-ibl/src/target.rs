@@ -263,7 +263,7 @@ pub(crate) fn three_direction(face: usize, size: usize, x: usize, y: usize) -> V
 mod tests {
     use super::*;
     use crate::harmonics::basis;
-    use crate::harmonics::even_directions as directions;
+    use crate::harmonics::directions;
 
     #[test]
     fn roughness_goes_from_the_picture_to_1() {

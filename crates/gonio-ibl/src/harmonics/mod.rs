@@ -16,7 +16,7 @@
 mod panorama;
 mod window;
 
-pub(crate) use window::directions as even_directions;
+pub use window::directions;
 pub use window::{Residual, Window};
 
 use crate::IblError;

@@ -57,8 +57,8 @@ impl FromStr for Window {
 /// Directions over which extremes are looked for.
 const DIRECTIONS: usize = 2048;
 
-/// Evenly spread directions: Swinbank & Purser 2006, "Fibonacci grids".
-pub(crate) fn directions(count: usize) -> impl Iterator<Item = Vec3<f64>> {
+/// Directions spread evenly over the sphere: Swinbank & Purser 2006, "Fibonacci grids".
+pub fn directions(count: usize) -> impl Iterator<Item = Vec3<f64>> {
     let golden = 0.5 * (5.0f64.sqrt() - 1.0);
     (0..count).map(move |i| {
         let z = 1.0 - (2 * i + 1) as f64 / count as f64;

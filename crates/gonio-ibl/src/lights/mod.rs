@@ -123,7 +123,7 @@ fn compare(environment: &Environment, lights: Vec<DirectionalLight>) -> Extracti
     let tree = LightTree::new(environment, 0.2);
     let kernel = Kernel::Cosine { exponent: 1.0 };
     let filter = Filter::new(&tree, &kernel, 0.15);
-    let normals: Vec<Vec3<f64>> = crate::harmonics::even_directions(NORMALS).collect();
+    let normals: Vec<Vec3<f64>> = crate::harmonics::directions(NORMALS).collect();
     let blocks: Vec<Vec<Vec3<f32>>> = normals.iter().map(|n| vec![n.to_f32()]).collect();
     let truth: Vec<[f32; 3]> = filter.apply(&blocks).into_iter().flatten().collect();
     let (mut sum, mut whole) = (0.0, 0.0);

@@ -1,0 +1,92 @@
+//! Tables of reflectance against quadrature of the model itself and against its known albedo.
+
+use gonio_brdf::part::albedo::directional_albedo;
+use gonio_brdf::part::distribution::{Distribution, Shape};
+use gonio_brdf::part::masking::Masking;
+use gonio_brdf::{Brdf, Model, ModelSpec};
+use gonio_ibl::Dfg;
+use gonio_num::Vec3;
+use gonio_radiometry::quadrature::GaussLegendre;
+use std::f64::consts::PI;
+
+#[test]
+fn whole_is_the_albedo_of_white_facets() {
+    let table = Dfg::new("ggx", 16, 16).unwrap();
+    for y in 0..16 {
+        let roughness = (y as f64 + 0.5) / 16.0;
+        let d = Distribution::isotropic(Shape::Ggx, roughness * roughness);
+        for x in 0..16 {
+            let mu = (x as f64 + 0.5) / 16.0;
+            let exact = directional_albedo(&d, Masking::SmithCorrelated, mu);
+            let found = f64::from(table.get(x, y)[1]);
+            // 576 nodes; that of gonio-brdf is within 1e-5.
+            assert!(
+                (found - exact).abs() < 1e-3,
+                "μ {mu} roughness {roughness}: {found} {exact}"
+            );
+        }
+    }
+}
+
+/// Both columns by a fine product rule over directions, which knows nothing of sampling.
+#[test]
+fn both_columns_agree_with_quadrature() {
+    for model in [
+        "ggx",
+        "beckmann",
+        "torrance-sparrow:distribution=ggx,masking=smith",
+    ] {
+        let table = Dfg::new(model, 4, 2).unwrap();
+        for (y, roughness) in [0.25, 0.75].into_iter().enumerate() {
+            let separator = if model.contains(':') { ',' } else { ':' };
+            let text = format!("{model}{separator}roughness={roughness},f0=1,interreflection=none");
+            let f: Model<f64, 3> = ModelSpec::parse(&text).unwrap().build().unwrap();
+            for x in 0..4 {
+                let mu = (x as f64 + 0.5) / 4.0;
+                let wo = Vec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
+                let [bias, whole] = integrate(&f, wo);
+                let found = table.get(x, y).map(f64::from);
+                // The table's 576 nodes, the rule's 400 × 400: each within 5e-4.
+                assert!(
+                    (found[1] - whole).abs() < 2e-3,
+                    "{model} {mu} {roughness}: {found:?} {whole}"
+                );
+                assert!(
+                    (found[0] - bias).abs() < 1e-3,
+                    "{model} {mu} {roughness}: {found:?} {bias}"
+                );
+                // Negative control: the neighbour's entry.
+                let other = table.get((x + 2) % 4, 1 - y).map(f64::from);
+                assert!((other[1] - whole).abs() + (other[0] - bias).abs() > 2e-3);
+            }
+        }
+    }
+}
+
+fn integrate(f: &Model<f64, 3>, wo: Vec3<f64>) -> [f64; 2] {
+    let rule = GaussLegendre::new(400);
+    let mut sum = [0.0; 2];
+    for (z, w) in rule.on(0.0, 1.0) {
+        let r = (1.0 - z * z).sqrt();
+        for k in 0..400 {
+            let phi = PI * (f64::from(k) + 0.5) / 400.0;
+            let wi = Vec3::new(
+                r * gonio_num::Real::cos(phi),
+                r * gonio_num::Real::sin(phi),
+                z,
+            );
+            let value = f.eval(wi, wo)[0] * z * w * 2.0 * PI / 400.0;
+            let facet = (0.5 * (1.0 + wi.dot(wo))).max(0.0).sqrt();
+            sum[0] += value * (1.0 - facet).powi(5);
+            sum[1] += value;
+        }
+    }
+    sum
+}
+
+#[test]
+fn bad_tables_are_refused() {
+    assert!(Dfg::new("lambertian", 4, 4).is_err());
+    assert!(Dfg::new("ggx", 0, 4).is_err() && Dfg::new("ggx", 4, 5000).is_err());
+    assert!(Dfg::at("ggx", &[0.0], 4).is_err() && Dfg::at("ggx", &[f64::NAN], 4).is_err());
+}
