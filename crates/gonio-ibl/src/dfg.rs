@@ -10,8 +10,8 @@
 //! Fdez-Agüera 2019, "A Multiple-Scattering Microfacet Model for Real-Time Image Based Lighting", and Filament.
 
 use crate::IblError;
-use gonio_brdf::batch::{self, Directions, Samples};
-use gonio_brdf::{Model, ModelSpec};
+use gonio_brdf::{Brdf, Model, ModelSpec};
+use gonio_num::Vec3;
 use gonio_radiometry::quadrature::GaussLegendre;
 use rayon::prelude::*;
 
@@ -26,9 +26,9 @@ pub struct Dfg {
     pub values: Vec<[f32; 2]>,
 }
 
-/// Quadrature in the sampler's numbers, where the integrand is smooth: panels and nodes along the first, whose ends are crowded,
-/// and steps along the second, which turns around.
-const PANELS: usize = 3;
+/// Quadrature in the sampler's numbers, where the integrand is smooth: steps along the first, which turns around, and panels of
+/// Gauss–Legendre nodes along the second, crowded at both ends.
+const PANELS: usize = 4;
 const NODES: usize = 8;
 const TURNS: usize = 24;
 
@@ -106,65 +106,39 @@ impl Dfg {
     }
 }
 
-/// The nodes: u₀, u₁ in [0, 1)² and weights whose sum is 1.
-fn nodes() -> (Vec<f32>, Vec<f32>, Vec<f64>) {
+/// The nodes: three numbers in [0, 1)³ for the sampler, and weights whose sum is 1.
+fn nodes() -> Vec<([f64; 3], f64)> {
     let rule = GaussLegendre::new(NODES);
-    let (mut u0, mut u1, mut weights) = (Vec::new(), Vec::new(), Vec::new());
+    let mut nodes = Vec::new();
     // s ↦ s² (3 − 2s) crowds nodes at both ends, where a sampler's map has its steep places.
     for panel in 0..PANELS {
-        let (a, b) = (
-            panel as f64 / PANELS as f64,
-            (panel + 1) as f64 / PANELS as f64,
-        );
-        for (s, w) in rule.on(a, b) {
+        let edge = |k: usize| k as f64 / PANELS as f64;
+        for (s, w) in rule.on(edge(panel), edge(panel + 1)) {
             for k in 0..TURNS {
-                u0.push((s * s * (3.0 - 2.0 * s)) as f32);
-                u1.push(((k as f64 + 0.5) / TURNS as f64) as f32);
-                weights.push(w * 6.0 * s * (1.0 - s) / TURNS as f64);
+                // The number that chooses a part takes each of eight strata in turn.
+                let part = ((nodes.len() * 5) % 8) as f64 / 8.0 + 0.0625;
+                // A quarter of a step off the axis of symmetry: no node is the mirror image of another.
+                let turn = (k as f64 + 0.25) / TURNS as f64;
+                let u = [turn, s * s * (3.0 - 2.0 * s), part];
+                nodes.push((u, w * 6.0 * s * (1.0 - s) / TURNS as f64));
             }
         }
     }
-    (u0, u1, weights)
+    nodes
 }
 
-fn row(model: &Model<f32, 3>, cosines: &[f64]) -> Vec<[f32; 2]> {
-    let (u0, u1, weights) = nodes();
-    let n = weights.len();
-    // Half of the numbers that choose a part for each: they are strata of it.
-    let u2: Vec<f32> = (0..n).map(|i| (i % 8) as f32 / 8.0 + 0.0625).collect();
-    let mut wi = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
-    let mut weight = [vec![0.0; n], vec![0.0; n], vec![0.0; n]];
-    let mut pdf = vec![0.0; n];
-    let mut delta = vec![false; n];
-    let zero = vec![0.0; n];
+fn row(model: &Model<f64, 3>, cosines: &[f64]) -> Vec<[f32; 2]> {
+    let nodes = nodes();
     cosines
         .iter()
         .map(|&mu| {
-            let sin = (1.0 - mu * mu).sqrt();
-            let (wx, wz) = (vec![sin as f32; n], vec![mu as f32; n]);
-            let [x0, x1, x2] = &mut wi;
-            let [a, b, c] = &mut weight;
-            batch::sample(
-                model,
-                Directions {
-                    x: &wx,
-                    y: &zero,
-                    z: &wz,
-                },
-                [&u0, &u1, &u2],
-                Samples {
-                    wi: [x0, x1, x2],
-                    weight: [a, b, c],
-                    pdf: &mut pdf,
-                    delta: &mut delta,
-                },
-            );
+            let wo = Vec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
             let (mut bias, mut whole) = (0.0, 0.0);
-            for i in 0..n {
-                let f = weights[i] * f64::from(weight[0][i]);
-                let cos = f64::from(wi[0][i]) * sin + f64::from(wi[2][i]) * mu;
+            for (u, w) in &nodes {
+                let s = model.sample(wo, *u);
+                let f = w * s.weight[0];
                 // cos²θ′ = (1 + ωi·ωr)/2.
-                let facet = (0.5 * (1.0 + cos)).clamp(0.0, 1.0).sqrt();
+                let facet = (0.5 * (1.0 + s.wi.dot(wo))).clamp(0.0, 1.0).sqrt();
                 whole += f;
                 bias += f * (1.0 - facet).powi(5);
             }

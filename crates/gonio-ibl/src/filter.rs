@@ -160,8 +160,9 @@ fn allowed(kernel: &Kernel, mean: f64, chord: f64, tolerance: f64) -> f64 {
     // Derivatives by differences over a small part of q, or of the lobe's width where q is smaller still.
     let h = (0.02 * q)
         .max(1e-3 * kernel.width() * kernel.width())
-        .min(0.02);
-    let (low, high) = ((q - h).max(0.0), (q + h).min(2.0));
+        .min(0.04);
+    // Beyond q = 2 the kernel is 0: the differences see the bend at the horizon.
+    let (low, high) = ((q - h).max(0.0), q + h);
     let at = 0.5 * (low + high);
     let half = 0.5 * (high - low);
     let (a, m, b) = (kernel.value(low), kernel.value(at), kernel.value(high));

@@ -9,9 +9,8 @@
 //! Kernels are functions of q = |n − ω|² = 2 (1 − cos θ), the squared chord: near the axis it keeps the digits that cos θ loses.
 
 use crate::IblError;
-use gonio_brdf::batch::{self, Directions};
-use gonio_brdf::{Model, ModelSpec};
-use gonio_num::Real;
+use gonio_brdf::{Brdf, Model, ModelSpec};
+use gonio_num::{Real, Vec3};
 use gonio_radiometry::quadrature::GaussLegendre;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -104,7 +103,7 @@ impl Kernel {
         Ok(Self::Cosine { exponent })
     }
 
-    /// The kernel of a model of the registry, evaluated as a batch.
+    /// The kernel of a model of the registry.
     ///
     /// # Errors
     /// [`IblError::Model`] for mirrors, for anisotropic models, and for those that reflect nothing along their normal.
@@ -118,7 +117,7 @@ impl Kernel {
                 "an anisotropic function has no kernel that depends on the angle alone",
             ));
         }
-        let model: Model<f32, 3> = spec.build()?;
+        let model: Model<f64, 3> = spec.build()?;
         if model.is_delta() {
             return Err(fail(
                 "a mirror's kernel is a point; level 0 of a map shows it",
@@ -219,32 +218,16 @@ impl Kernel {
     }
 }
 
-/// f·cos θ towards the normal at t = √(q/4).
-fn evaluate(model: &Model<f32, 3>, t: &[f64]) -> Vec<[f64; 3]> {
-    let cos: Vec<f32> = t
-        .iter()
-        .map(|t| (1.0 - 2.0 * t * t).max(0.0) as f32)
-        .collect();
-    let sin: Vec<f32> = t
-        .iter()
-        .map(|t| (2.0 * t * (1.0 - t * t).max(0.0).sqrt()) as f32)
-        .collect();
-    let zero = vec![0.0; t.len()];
-    let one = vec![1.0; t.len()];
-    let (mut r, mut g, mut b) = (zero.clone(), zero.clone(), zero.clone());
-    let wi = Directions {
-        x: &sin,
-        y: &zero,
-        z: &cos,
-    };
-    let wo = Directions {
-        x: &zero,
-        y: &zero,
-        z: &one,
-    };
-    batch::eval(model, wi, wo, [&mut r, &mut g, &mut b]);
-    (0..t.len())
-        .map(|i| [r[i], g[i], b[i]].map(|f| f64::from(f) * f64::from(cos[i])))
+/// f·cos θ towards the normal at t = √(q/4). Ten thousand values once a level are too few for a batch, whose code for every model
+/// would have to be compiled here.
+fn evaluate(model: &Model<f64, 3>, t: &[f64]) -> Vec<[f64; 3]> {
+    let wo = Vec3::new(0.0, 0.0, 1.0);
+    t.iter()
+        .map(|t| {
+            let cos = (1.0 - 2.0 * t * t).max(0.0);
+            let sin = 2.0 * t * (1.0 - t * t).max(0.0).sqrt();
+            model.eval_cos(Vec3::new(sin, 0.0, cos), wo)
+        })
         .collect()
 }
 

@@ -12,6 +12,8 @@ use gonio_num::{Real, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
+/// Smallest edge of the finest cube: cells of 0.7°, small enough for the widest kernels at the smallest tolerance.
+const COARSEST: usize = 128;
 /// Largest edge of the finest cube.
 const LARGEST: usize = 1024;
 
@@ -135,7 +137,10 @@ impl LightTree {
 /// Edge of the finest cube, a power of two: as fine as the picture, but no finer than 0.4 of the lobe's width.
 fn size_for(picture: usize, width: f64) -> usize {
     let needed = (0.5 * PI / (0.4 * width)).ceil() as usize;
-    picture.min(needed).next_power_of_two().clamp(16, LARGEST)
+    picture
+        .min(needed)
+        .next_power_of_two()
+        .clamp(COARSEST, LARGEST)
 }
 
 /// In how many parts each side of a texel is divided, so that a lobe of `width` sees no single points.

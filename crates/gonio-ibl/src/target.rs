@@ -94,6 +94,8 @@ impl Target {
         match self {
             Self::Gltf | Self::Custom => lod,
             Self::Filament => 1.0 - (1.0 - lod).max(0.0).sqrt(),
+            // Its formula gives a rounding of 0 there.
+            Self::Unity if k == 0 => 0.0,
             Self::Unity => {
                 let step = (k as f64 / 6.0).min(1.0);
                 (1.7 / 1.4 - (2.89 / 1.96 - 2.8 / 1.96 * step).max(0.0).sqrt()).clamp(0.0, 1.0)

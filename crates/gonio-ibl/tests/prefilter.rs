@@ -36,9 +36,7 @@ fn kernels() -> Vec<Kernel> {
         Kernel::cosine(1.0).unwrap(),
         Kernel::cosine(20.0).unwrap(),
         model("beckmann:f0=1").kernel(0.4).unwrap(),
-        model("oren-nayar")
-            .kernel(0.4)
-            .unwrap_or(Kernel::cosine(3.0).unwrap()),
+        model("burley").kernel(0.4).unwrap(),
     ]
 }
 

@@ -19,9 +19,10 @@ fn whole_is_the_albedo_of_white_facets() {
             let mu = (x as f64 + 0.5) / 16.0;
             let exact = directional_albedo(&d, Masking::SmithCorrelated, mu);
             let found = f64::from(table.get(x, y)[1]);
-            // 576 nodes; that of gonio-brdf is within 1e-5.
+            // 768 nodes; where the mirrored direction dips below the horizon the integrand has an edge, which crosses about √768
+            // of their cells, each of weight 1/768 and wrong by a few per cent. That of gonio-brdf is within 1e-5.
             assert!(
-                (found - exact).abs() < 1e-3,
+                (found - exact).abs() < 2e-3,
                 "μ {mu} roughness {roughness}: {found} {exact}"
             );
         }
@@ -46,7 +47,7 @@ fn both_columns_agree_with_quadrature() {
                 let wo = Vec3::new((1.0 - mu * mu).sqrt(), 0.0, mu);
                 let [bias, whole] = integrate(&f, wo);
                 let found = table.get(x, y).map(f64::from);
-                // The table's 576 nodes, the rule's 400 × 400: each within 5e-4.
+                // The table's 768 nodes, as above; the rule's 400 × 400 within 2e-4.
                 assert!(
                     (found[1] - whole).abs() < 2e-3,
                     "{model} {mu} {roughness}: {found:?} {whole}"
