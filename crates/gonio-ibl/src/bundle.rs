@@ -124,7 +124,7 @@ pub fn steps(options: &Options) -> usize {
 /// | `sheen.*` | the same for Charlie, if asked for |
 /// | `diffuse.*` | irradiance / π |
 /// | `harmonics.json` | spherical harmonics |
-/// | `dfg.exr` | the table; B is the albedo of the sheen |
+/// | `dfg.exr` | the table; B is the albedo of the sheen, if asked for |
 /// | `report.json` | the report |
 ///
 /// # Errors
@@ -472,8 +472,16 @@ fn write_harmonics(
     Ok(())
 }
 
-/// The table in a target's layout, as a picture.
-pub fn table_picture(target: Target, size: usize, model: &str) -> Result<Image, IblError> {
+/// The table in a target's layout, as a picture; its blue channel is the albedo of the sheen, or 0 without.
+///
+/// # Errors
+/// As [`Dfg::at`].
+pub fn table_picture(
+    target: Target,
+    size: usize,
+    model: &str,
+    sheen: bool,
+) -> Result<Image, IblError> {
     let layout = target.table();
     let cosines: Vec<f64> = (0..size)
         .map(|x| {
@@ -482,11 +490,14 @@ pub fn table_picture(target: Target, size: usize, model: &str) -> Result<Image, 
         })
         .collect();
     let whole = Dfg::at(model, &cosines, size)?;
-    let sheen = Dfg::at("sheen-charlie", &cosines, size)?;
+    let sheen = match sheen {
+        true => Some(Dfg::at("sheen-charlie", &cosines, size)?),
+        false => None,
+    };
     Ok(Image::from_fn(size, size, |x, y| {
         let row = if layout.rough_first { size - 1 - y } else { y };
         let [bias, all] = whole.get(x, row);
-        let blue = sheen.get(x, row)[1];
+        let blue = sheen.as_ref().map_or(0.0, |s| s.get(x, row)[1]);
         if layout.multiple_scattering {
             [bias, all, blue]
         } else {
@@ -496,7 +507,12 @@ pub fn table_picture(target: Target, size: usize, model: &str) -> Result<Image, 
 }
 
 fn write_table(options: &Options, folder: &Path, report: &mut Report) -> Result<(), IblError> {
-    let picture = table_picture(options.target, options.table_size, &options.table_model)?;
+    let picture = table_picture(
+        options.target,
+        options.table_size,
+        &options.table_model,
+        options.sheen,
+    )?;
     let mut layers = Layers::new(picture.width, picture.height);
     for (k, name) in ["R", "G", "B"].into_iter().enumerate() {
         let samples = picture.pixels.iter().map(|p| p[k]).collect();

@@ -1,5 +1,7 @@
 //! Spherical harmonics of panoramas against closed forms.
 
+#![allow(clippy::unwrap_used)]
+
 use gonio_env::{Environment, Layout};
 use gonio_ibl::Harmonics;
 use gonio_ibl::harmonics::{Window, basis, directions};

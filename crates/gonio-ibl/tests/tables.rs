@@ -1,5 +1,7 @@
 //! Tables of reflectance against quadrature of the model itself and against its known albedo.
 
+#![allow(clippy::unwrap_used)]
+
 use gonio_brdf::part::albedo::directional_albedo;
 use gonio_brdf::part::distribution::{Distribution, Shape};
 use gonio_brdf::part::masking::Masking;

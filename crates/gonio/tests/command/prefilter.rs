@@ -32,7 +32,7 @@ fn each_target_gets_its_files() {
         let report = place.json(&words);
         assert_eq!(report["target"], target);
         for l in report["levels"].as_array().unwrap() {
-            // A tolerance of 0.6: see the tests of gonio-ibl.
+            // See the tests of gonio-ibl.
             let error = l["error"]["mean"].as_f64().unwrap_or(0.0);
             assert!(error < 5e-3, "{l}");
         }
