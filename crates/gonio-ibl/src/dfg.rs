@@ -17,7 +17,6 @@ use gonio_brdf::{Brdf, Model, ModelSpec, Value};
 use gonio_num::dispatch::{Kernel, dispatch};
 use gonio_num::lanes::Lanes;
 use gonio_num::{Real, Vec3};
-use gonio_radiometry::quadrature::GaussLegendre;
 use rayon::prelude::*;
 
 /// A table over cosine and roughness.
@@ -31,11 +30,10 @@ pub struct Dfg {
     pub values: Vec<[f32; 2]>,
 }
 
-/// Quadrature in the sampler's numbers, where the integrand is smooth: steps along the first, which turns around, and panels of
-/// Gauss–Legendre nodes along the second, crowded at both ends.
-const PANELS: usize = 4;
-const NODES: usize = 8;
-const TURNS: usize = 24;
+/// Quadrature in the sampler's numbers: steps along the first, which turns around, and midpoints along the second, crowded at both
+/// ends. Rules of higher order lose: where the mirrored direction is on the horizon the integrand has an edge, nearly along a ring.
+const RINGS: usize = 64;
+const TURNS: usize = 12;
 
 impl Dfg {
     /// The table of a microfacet model, `model` naming it without roughness and reflectance: `ggx`, `beckmann`,
@@ -116,93 +114,26 @@ impl Dfg {
 
 /// The nodes: three numbers in [0, 1)³ for the sampler, and weights whose sum is 1.
 fn nodes() -> Vec<([f64; 3], f64)> {
-    let rule = GaussLegendre::new(NODES);
-    let mut nodes = Vec::new();
-    // s ↦ s² (3 − 2s) crowds nodes at both ends, where a sampler's map has its steep places.
-    for panel in 0..PANELS {
-        let edge = |k: usize| k as f64 / PANELS as f64;
-        for (s, w) in rule.on(edge(panel), edge(panel + 1)) {
-            for k in 0..TURNS {
-                // The number that chooses a part takes each of eight strata in turn.
-                let part = ((nodes.len() * 5) % 8) as f64 / 8.0 + 0.0625;
-                // A quarter of a step off the axis of symmetry: no node is the mirror image of another.
-                let turn = (k as f64 + 0.25) / TURNS as f64;
-                let u = [turn, s * s * (3.0 - 2.0 * s), part];
-                nodes.push((u, w * 6.0 * s * (1.0 - s) / TURNS as f64));
-            }
+    let mut nodes = Vec::with_capacity(RINGS * TURNS);
+    for ring in 0..RINGS {
+        // s ↦ s² (3 − 2s) crowds rings at both ends, where a sampler's map has its steep places.
+        let s = (ring as f64 + 0.5) / RINGS as f64;
+        // Each ring is turned against the last, so that an edge does not meet all of them alike.
+        let shift = (ring as f64 * 0.618_033_988_749_894_9).fract();
+        for k in 0..TURNS {
+            let turn = (k as f64 + shift) / TURNS as f64;
+            // The number that chooses a part takes each of eight strata in turn.
+            let part = ((nodes.len() * 5) % 8) as f64 / 8.0 + 0.0625;
+            let u = [turn, s * s * (3.0 - 2.0 * s), part];
+            nodes.push((u, 6.0 * s * (1.0 - s) / (RINGS * TURNS) as f64));
         }
+    }
+    // The midpoint rule of 6 s (1 − s) misses 1 by 1/2n².
+    let sum: f64 = nodes.iter().map(|n| n.1).sum();
+    for n in &mut nodes {
+        n.1 /= sum;
     }
     nodes
-}
-
-/// The masking, if the description is of GGX facets and says nothing else: such tables are made in lanes.
-fn facets(spec: &ModelSpec) -> Option<Masking> {
-    let only = |key: &String| key == "distribution" || key == "masking";
-    if spec.name != "torrance-sparrow" || !spec.values.keys().all(only) {
-        return None;
-    }
-    let word = |key: &str| match spec.value(key) {
-        Some(Value::Choice(word)) => Some(word),
-        _ => None,
-    };
-    if Shape::from_name(&word("distribution")?)? != Shape::Ggx {
-        return None;
-    }
-    Masking::from_name(&word("masking")?)
-}
-
-fn ggx_row(roughness: f64, masking: Masking, cosines: &[f64]) -> Vec<[f32; 2]> {
-    let mu: Vec<f32> = cosines.iter().map(|c| *c as f32).collect();
-    let mut found = vec![[0.0; 2]; mu.len()];
-    dispatch(GgxRow {
-        alpha: roughness * roughness,
-        masking,
-        nodes: &nodes(),
-        mu: &mu,
-        found: &mut found,
-    });
-    found
-}
-
-/// [`row`] of GGX facets, lanes over cosines.
-struct GgxRow<'a> {
-    alpha: f64,
-    masking: Masking,
-    nodes: &'a [([f64; 3], f64)],
-    mu: &'a [f32],
-    found: &'a mut [[f32; 2]],
-}
-
-impl Kernel for GgxRow<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<const N: usize>(self) {
-        let d = Distribution::isotropic(Shape::Ggx, Lanes::<N>::lit(self.alpha.max(1e-6)));
-        let mut at = 0;
-        while at < self.mu.len() {
-            let mu = Lanes::<N>::load_or(&self.mu[at..], 1.0);
-            let sin = (Lanes::splat(1.0) - mu * mu).safe_sqrt();
-            let wo = Vec3::new(sin, Lanes::splat(0.0), mu);
-            let over = Lanes::splat(4.0) / smith_g1_over_cos(&d, wo);
-            let (mut bias, mut whole) = (Lanes::<N>::splat(0.0), Lanes::<N>::splat(0.0));
-            for (u, w) in self.nodes {
-                let h = d.sample_visible_ggx(wo, Lanes::lit(u[0]), Lanes::lit(u[1]));
-                let cos = wo.dot(h);
-                let wi = wo.reflect(h);
-                // f cosθi over the density D G₁(ωr)/(4 cosθr) of ωi.
-                let v = visibility(self.masking, &d, wi, wo, &Half::of(h, cos));
-                let above = wi.z.gt(Lanes::splat(0.0)) & cos.gt(Lanes::splat(0.0));
-                let f = Lanes::select(above, Lanes::lit(*w) * v * wi.z * over, Lanes::splat(0.0));
-                whole = whole + f;
-                bias = bias + f * (Lanes::splat(1.0) - cos.saturate()).pow5();
-            }
-            for lane in 0..N.min(self.mu.len() - at) {
-                self.found[at + lane] = [bias.0[lane], whole.0[lane]];
-            }
-            at += N;
-        }
-    }
 }
 
 fn row(model: &Model<f64, 3>, cosines: &[f64]) -> Vec<[f32; 2]> {

@@ -22,9 +22,9 @@ fn whole_is_the_albedo_of_white_facets() {
             let exact = directional_albedo(&d, Masking::SmithCorrelated, mu);
             let found = f64::from(table.get(x, y)[1]);
             // 768 nodes; where the mirrored direction dips below the horizon the integrand has an edge, which crosses about √768
-            // of their cells, each of weight 1/768 and wrong by a few per cent. That of gonio-brdf is within 1e-5.
+            // of their cells, each of weight 1/768: with signs at random an error of √28/768 times the height of the edge, 0.1.
             assert!(
-                (found - exact).abs() < 2e-3,
+                (found - exact).abs() < 8e-4,
                 "μ {mu} roughness {roughness}: {found} {exact}"
             );
         }
