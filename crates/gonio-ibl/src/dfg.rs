@@ -136,6 +136,76 @@ fn nodes() -> Vec<([f64; 3], f64)> {
     nodes
 }
 
+/// The masking, if the description is of GGX facets and says nothing else: such tables are made in lanes.
+fn facets(spec: &ModelSpec) -> Option<Masking> {
+    let only = |key: &String| key == "distribution" || key == "masking";
+    if spec.name != "torrance-sparrow" || !spec.values.keys().all(only) {
+        return None;
+    }
+    let word = |key: &str| match spec.value(key) {
+        Some(Value::Choice(word)) => Some(word),
+        _ => None,
+    };
+    if Shape::from_name(&word("distribution")?)? != Shape::Ggx {
+        return None;
+    }
+    Masking::from_name(&word("masking")?)
+}
+
+fn ggx_row(roughness: f64, masking: Masking, cosines: &[f64]) -> Vec<[f32; 2]> {
+    let mu: Vec<f32> = cosines.iter().map(|c| *c as f32).collect();
+    let mut found = vec![[0.0; 2]; mu.len()];
+    dispatch(GgxRow {
+        alpha: roughness * roughness,
+        masking,
+        nodes: &nodes(),
+        mu: &mu,
+        found: &mut found,
+    });
+    found
+}
+
+/// [`row`] of GGX facets, lanes over cosines.
+struct GgxRow<'a> {
+    alpha: f64,
+    masking: Masking,
+    nodes: &'a [([f64; 3], f64)],
+    mu: &'a [f32],
+    found: &'a mut [[f32; 2]],
+}
+
+impl Kernel for GgxRow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const N: usize>(self) {
+        let d = Distribution::isotropic(Shape::Ggx, Lanes::<N>::lit(self.alpha.max(1e-6)));
+        let mut at = 0;
+        while at < self.mu.len() {
+            let mu = Lanes::<N>::load_or(&self.mu[at..], 1.0);
+            let sin = (Lanes::splat(1.0) - mu * mu).safe_sqrt();
+            let wo = Vec3::new(sin, Lanes::splat(0.0), mu);
+            let over = Lanes::splat(4.0) / smith_g1_over_cos(&d, wo);
+            let (mut bias, mut whole) = (Lanes::<N>::splat(0.0), Lanes::<N>::splat(0.0));
+            for (u, w) in self.nodes {
+                let h = d.sample_visible_ggx(wo, Lanes::lit(u[0]), Lanes::lit(u[1]));
+                let cos = wo.dot(h);
+                let wi = wo.reflect(h);
+                // f cosθi over the density D G₁(ωr)/(4 cosθr) of ωi.
+                let v = visibility(self.masking, &d, wi, wo, &Half::of(h, cos));
+                let above = wi.z.gt(Lanes::splat(0.0)) & cos.gt(Lanes::splat(0.0));
+                let f = Lanes::select(above, Lanes::lit(*w) * v * wi.z * over, Lanes::splat(0.0));
+                whole = whole + f;
+                bias = bias + f * (Lanes::splat(1.0) - cos.saturate()).pow5();
+            }
+            for lane in 0..N.min(self.mu.len() - at) {
+                self.found[at + lane] = [bias.0[lane], whole.0[lane]];
+            }
+            at += N;
+        }
+    }
+}
+
 fn row(model: &Model<f64, 3>, cosines: &[f64]) -> Vec<[f32; 2]> {
     let nodes = nodes();
     cosines
