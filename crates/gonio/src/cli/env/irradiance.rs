@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         destination::check_extension(path, &["exr", "hdr", "ktx2", "dds"], "maps")?;
         destination::writable(path)?;
     }
-    if arguments.normal.is_some_and(|n| !(n.length() > 0.0)) {
+    if arguments.normal.is_some_and(|n| n.length() == 0.0) {
         return Err(Failure::usage("--normal 0,0,0: it has no direction")
             .with_help("give a vector such as 0,1,0"));
     }
