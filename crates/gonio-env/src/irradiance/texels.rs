@@ -43,9 +43,11 @@ impl Environment {
         }
     }
 
-    /// Columns and rows of the picture, whatever its layout; nothing for a uniform environment.
+    /// Columns and rows of the picture, whatever its layout; nothing for a uniform environment. A computed sky has none: it is given
+    /// 4096 × 2048, on which its sun is six texels wide.
     pub fn picture_size(&self) -> Option<[usize; 2]> {
         match &self.source {
+            Source::Sky(_) => Some([4096, 2048]),
             Source::Picture(p) => Some([p.map.width, p.map.height]),
             Source::Uniform(_) => None,
         }

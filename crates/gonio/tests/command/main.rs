@@ -14,7 +14,6 @@ mod export;
 mod interrupt;
 mod measure;
 mod plot;
-mod prefilter;
 mod render;
 mod scenes;
 mod support;

@@ -3,11 +3,11 @@
 mod capture;
 mod convert;
 mod info;
-mod sky;
 mod irradiance;
 mod lights;
 mod prefilter;
 mod sh;
+mod sky;
 mod steps;
 
 use super::failure::Failure;
