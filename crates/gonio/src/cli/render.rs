@@ -85,7 +85,7 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, value_name = "NAME", default_value_t = EnvSamplingName::Luminance, help_heading = "Method")]
     env_sampling: EnvSamplingName,
     /// Candidates of the product, from the light and as many from the reflection function
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = parse::whole(1, 256), allow_hyphen_values = true, help_heading = "Method")]
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = parse::whole(1u32, 256), allow_hyphen_values = true, help_heading = "Method")]
     env_candidates: u32,
     /// Reflections that light may make, passages through surfaces included, for the path integrator
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = parse::whole(0, u32::MAX), allow_hyphen_values = true, help_heading = "Method")]

@@ -14,6 +14,7 @@ mod export;
 mod interrupt;
 mod measure;
 mod plot;
+mod prefilter;
 mod render;
 mod scenes;
 mod support;

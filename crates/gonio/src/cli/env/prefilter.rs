@@ -93,14 +93,17 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     bundle::check(&options)?;
     let folder = &arguments.output;
-    if !folder.is_dir() {
+    if folder.is_dir() {
+        destination::writable(&folder.join("report.json"))?;
+    } else {
         destination::writable(folder)?;
+    }
+    let environment = arguments.reading.parse(&arguments.environment)?;
+    replaced(&environment).iter().for_each(|w| warn(w));
+    if !folder.is_dir() {
         std::fs::create_dir(folder)
             .map_err(|e| Failure::io(&folder.display().to_string(), "make the folder", &e))?;
     }
-    destination::writable(&folder.join("report.json"))?;
-    let environment = arguments.reading.parse(&arguments.environment)?;
-    replaced(&environment).iter().for_each(|w| warn(w));
     let steps = Steps::new(bundle::steps(&options));
     let report = bundle::write(&environment, &options, folder, &mut |step| steps.next(step))?;
     steps.finish();
