@@ -223,6 +223,6 @@ fn bad_arguments_are_refused_before_work() {
             "-1",
         ],
         2,
-        &["--exponent"],
+        &["exponent = -1"],
     );
 }

@@ -31,7 +31,12 @@ pub(in crate::cli) struct Arguments {
     #[arg(long, value_name = "N", default_value = "64", value_parser = parse::whole(1usize, 4096))]
     size: usize,
     /// Instead of irradiance the mean radiance weighed by the cosine to this power: Phong's lobe about the axis
-    #[arg(long, value_name = "P", requires = "output")]
+    #[arg(
+        long,
+        value_name = "P",
+        requires = "output",
+        allow_hyphen_values = true
+    )]
     exponent: Option<f64>,
     #[command(flatten)]
     reading: PanoramaArguments,
