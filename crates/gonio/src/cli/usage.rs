@@ -88,11 +88,14 @@ fn help(error: &clap::Error, command: &Command, words: &[String]) -> String {
 
 /// `gonio brdf list` for the word `list`: where a subcommand of this name is, one level down.
 fn subcommand_elsewhere(command: &Command, word: &str) -> Option<String> {
-    command.get_subcommands().find_map(|group| {
-        group
-            .find_subcommand(word)
-            .map(|found| format!("gonio {} {}", group.get_name(), found.get_name()))
-    })
+    let all: Vec<String> = command
+        .get_subcommands()
+        .filter_map(|group| {
+            let found = group.find_subcommand(word)?;
+            Some(format!("gonio {} {}", group.get_name(), found.get_name()))
+        })
+        .collect();
+    (!all.is_empty()).then(|| all.join("' or '"))
 }
 
 /// The command's name and the subcommands that the words begin with.

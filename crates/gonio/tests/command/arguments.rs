@@ -10,7 +10,7 @@ fn slips_of_the_pen_are_understood() {
         (vec!["list"], "did you mean 'gonio brdf list'?"),
         (
             vec!["irradiance"],
-            "did you mean 'gonio measure irradiance'?",
+            "did you mean 'gonio env irradiance' or 'gonio measure irradiance'?",
         ),
         (vec!["brdf", "lst"], "did you mean 'list'?"),
         (vec!["measure", "irradance"], "did you mean 'irradiance'?"),
