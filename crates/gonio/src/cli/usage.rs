@@ -86,7 +86,7 @@ fn help(error: &clap::Error, command: &Command, words: &[String]) -> String {
     format!("see '{} --help'", path_of(command, words).join(" "))
 }
 
-/// `gonio brdf list` for the word `list`: where a subcommand of this name is, one level down.
+/// `gonio brdf list` for the word `list`: where the subcommands of this name are, one level down.
 fn subcommand_elsewhere(command: &Command, word: &str) -> Option<String> {
     let all: Vec<String> = command
         .get_subcommands()
