@@ -110,7 +110,7 @@ struct HarmonicsFile<'a> {
 /// What a step is called in the progress, and how many there are.
 pub type Progress<'a> = &'a mut dyn FnMut(&str);
 
-/// Names of the steps in [`write`]: each level of each chain, and four more.
+/// Names of the steps in [`write()`]: each level of each chain, and four more.
 pub fn steps(options: &Options) -> usize {
     let chains = 1 + usize::from(options.sheen && options.target != Target::Three);
     chains * options.target.levels(options.size) + 4
