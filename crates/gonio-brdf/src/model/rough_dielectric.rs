@@ -79,7 +79,8 @@ pub const INFO: ModelInfo = ModelInfo {
 ///
 /// E is the share of light, in units of n², that leaves after one facet, reflected or refracted (a table over √μ, √α and the index), Ē
 /// its mean on each side, and Σ goes over both sides: the lobe is reciprocal and makes a white furnace on either side. How much of
-/// it is refracted is an approximation.
+/// it is refracted is an approximation. With anisotropy 1 − E is that of the smaller slope scale times (α_min/α_max)^(5/4): less is given
+/// back than was lost.
 ///
 /// Sampling: a normal (visible ones for GGX), then reflection or refraction by F; the cosine for the last lobe. An index nearer to 1 than 1/1024
 /// is taken for 1 ± 1/1024.

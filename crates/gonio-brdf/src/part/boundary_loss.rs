@@ -205,9 +205,9 @@ fn roundness<R: Real>(alpha_x: R, alpha_y: R) -> R {
 
 /// The lobe of light that leaves a boundary after several facets, for Beckmann's or the GGX distribution.
 ///
-/// The tables are of round surfaces. In some directions an anisotropic one loses less than even the smoother round one
-/// does. So the loss is read at the smaller slope scale and
-/// multiplied by (α_min/α_max)^(5/4), which keeps it below the true one: too little is given back, never too much.
+/// The tables are of round surfaces. In some directions an anisotropic one loses less than even the smoother round one does. So the loss is
+/// read at the smaller slope scale and multiplied by (α_min/α_max)^(5/4), which keeps it below the true one: too little is given back,
+/// never too much.
 #[derive(Debug, Clone, Copy)]
 pub struct BoundaryLoss<R: Real> {
     /// The share of it that leaves into the body.
