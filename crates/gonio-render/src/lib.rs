@@ -13,6 +13,7 @@ mod error;
 pub mod film;
 pub mod filter;
 pub mod integrator;
+mod pass;
 mod render;
 pub mod sensor;
 
