@@ -90,6 +90,20 @@ pub fn pdf<const N: usize>(
     pdf_on(InstructionSet::detect(), model, wi, wo, result);
 }
 
+/// [`eval`] and [`pdf`] at once, the same to the bit, for less than both cost.
+///
+/// # Panics
+/// If the lengths differ.
+pub fn eval_and_pdf<const N: usize>(
+    model: &Model<f32, N>,
+    wi: Directions<'_>,
+    wo: Directions<'_>,
+    result: [&mut [f32]; N],
+    pdf: &mut [f32],
+) {
+    eval_and_pdf_on(InstructionSet::detect(), model, wi, wo, result, pdf);
+}
+
 /// Draws a direction for each wo from three numbers in [0, 1).
 ///
 /// # Panics
@@ -152,6 +166,45 @@ pub fn pdf_on<const N: usize>(
         return;
     }
     model.visit(On(set, Pdf { wi, wo, result }));
+}
+
+/// As [`eval_and_pdf`], under a given instruction set.
+///
+/// # Panics
+/// If the lengths differ or the machine doesn't have the instruction set.
+pub fn eval_and_pdf_on<const N: usize>(
+    set: InstructionSet,
+    model: &Model<f32, N>,
+    wi: Directions<'_>,
+    wo: Directions<'_>,
+    result: [&mut [f32]; N],
+    pdf: &mut [f32],
+) {
+    wi.check(pdf.len());
+    wo.check(pdf.len());
+    for r in &result {
+        assert_eq!(
+            r.len(),
+            pdf.len(),
+            "results must have the directions' length"
+        );
+    }
+    if let Model::Table(table) = model
+        && let Some((all, factor)) = table.batched()
+    {
+        all.eval_batch(set, factor, [wi, wo], three(result));
+        all.pdf_batch(set, [wi, wo], pdf);
+        return;
+    }
+    model.visit(On(
+        set,
+        EvalAndPdf {
+            wi,
+            wo,
+            result,
+            pdf,
+        },
+    ));
 }
 
 /// As [`sample`], under a given instruction set.
@@ -267,6 +320,15 @@ impl<const N: usize> Brdf<Group, N> for Part<'_, N> {
         pdf
     }
 
+    fn eval_and_pdf(&self, wi: Vec3<Group>, wo: Vec3<Group>) -> ([Group; N], Group) {
+        let mut f = [Group::splat(0.0); N];
+        let mut pdf = Group::splat(0.0);
+        let result = f.each_mut().map(|f| &mut f.0[..]);
+        let (wi, wo) = (directions(&wi), directions(&wo));
+        eval_and_pdf_on(self.set, self.model, wi, wo, result, &mut pdf.0);
+        (f, pdf)
+    }
+
     fn sample(&self, wo: Vec3<Group>, u: [Group; 3]) -> Sample<Group, N> {
         let mut s = Sample::<Group, N>::none();
         let result = Samples {
@@ -349,6 +411,28 @@ impl<const N: usize> Batch<N> for Pdf<'_> {
             opaque(model)
                 .pdf(self.wi.load(at), self.wo.load(at))
                 .store(&mut self.result[at..]);
+            at += L;
+        }
+    }
+}
+
+struct EvalAndPdf<'a, const N: usize> {
+    wi: Directions<'a>,
+    wo: Directions<'a>,
+    result: [&'a mut [f32]; N],
+    pdf: &'a mut [f32],
+}
+
+impl<const N: usize> Batch<N> for EvalAndPdf<'_, N> {
+    #[inline(always)]
+    fn run<const L: usize, B: Brdf<Lanes<L>, N>>(self, model: &B) {
+        let mut at = 0;
+        while at < self.wo.len() {
+            let (f, pdf) = opaque(model).eval_and_pdf(self.wi.load(at), self.wo.load(at));
+            for k in 0..N {
+                f[k].store(&mut self.result[k][at..]);
+            }
+            pdf.store(&mut self.pdf[at..]);
             at += L;
         }
     }

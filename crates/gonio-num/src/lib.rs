@@ -12,6 +12,7 @@
 
 mod affine;
 pub mod dispatch;
+mod double_lanes;
 pub mod dual;
 pub mod expr;
 mod frame;
@@ -20,13 +21,16 @@ pub mod math;
 mod real;
 mod table;
 mod vec3;
+pub mod vectors;
 mod window;
 
 pub use affine::Affine3;
+pub use double_lanes::DoubleLanes;
 pub use frame::Frame;
 pub use real::{LoopState, Mask, Real, Work};
 pub use table::{Table1, Table2, Table3};
 pub use vec3::Vec3;
+pub use vectors::Vectors;
 pub use window::window;
 
 /// The example of the README, compiled and run.

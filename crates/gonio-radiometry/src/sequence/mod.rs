@@ -9,8 +9,10 @@
 mod hash;
 mod rng;
 mod sobol;
+mod streams;
 
 pub use rng::Rng;
+pub use streams::SampleStreams;
 
 /// How the samples of a pixel relate to each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -108,26 +110,33 @@ impl SampleStream {
         const { assert!(D <= sobol::DIMENSIONS) };
         let first = self.dimension;
         self.dimension = first.wrapping_add(D as u32);
-        let mut out = [0.0; D];
         match self.kind {
-            SamplerKind::Independent => {
-                for (i, x) in out.iter_mut().enumerate() {
-                    let dimension = first.wrapping_add(i as u32);
-                    *x = unit_f32((hash::combine(self.key, dimension.into()) >> 32) as u32);
-                }
-            }
-            SamplerKind::Sobol => {
-                let bits = sobol::scrambled::<D>(
-                    self.reversed_index,
-                    hash::combine(self.key, first.into()),
-                );
-                for i in 0..D {
-                    out[i] = unit_f32(bits[i]);
-                }
-            }
+            SamplerKind::Independent => independent(self.key, first),
+            SamplerKind::Sobol => padded(self.key, self.reversed_index, first),
         }
-        out
     }
+}
+
+/// `D` independent numbers from dimension `first` on.
+#[inline(always)]
+fn independent<const D: usize>(key: u64, first: u32) -> [f32; D] {
+    let mut out = [0.0; D];
+    for (i, x) in out.iter_mut().enumerate() {
+        let dimension = first.wrapping_add(i as u32);
+        *x = unit_f32((hash::combine(key, dimension.into()) >> 32) as u32);
+    }
+    out
+}
+
+/// The point of the Sobol' set of dimension `first`.
+#[inline(always)]
+fn padded<const D: usize>(key: u64, reversed_index: u32, first: u32) -> [f32; D] {
+    let bits = sobol::scrambled::<D>(reversed_index, hash::combine(key, first.into()));
+    let mut out = [0.0; D];
+    for i in 0..D {
+        out[i] = unit_f32(bits[i]);
+    }
+    out
 }
 
 /// The fraction x / 2³², truncated to 24 bits: in [0, 1 − 2⁻²⁴], exactly representable.

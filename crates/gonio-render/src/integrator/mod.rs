@@ -4,6 +4,7 @@ pub mod direct;
 mod environment;
 pub mod path;
 mod vertex;
+pub(crate) mod wavefront;
 
 pub use direct::Direct;
 pub use environment::EnvironmentSampling;

@@ -4,7 +4,7 @@ use super::{RayCounts, dimension, product, scaled};
 use gonio_brdf::{Brdf, Model, Sample};
 use gonio_num::{Frame, Vec3};
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{Interior, LightSample, LightTarget, Ray, Scene, SurfacePoint};
+use gonio_scene::{Interior, LightSample, LightTarget, Ray, Scene, Shading, SurfacePoint};
 use std::borrow::Cow;
 
 /// A point on a surface with its reflection function, seen from one direction.
@@ -81,18 +81,9 @@ pub(super) fn arrive<'a>(
                 continue;
             }
         }
-        return Some(Vertex {
-            frame: shading.frame,
-            wo: shading.frame.to_local(wo_world),
-            wo_world,
-            model: shading.model,
-            transmits: shading.transmits,
-            bounds_a_body,
-            albedo: shading.albedo,
-            material: scene.geometry.instances()[point.instance as usize].material,
-            distance: travelled + point.t,
-            point,
-        });
+        let mut vertex = Vertex::new(scene, point, wo_world, shading);
+        vertex.distance = travelled + point.t;
+        return Some(vertex);
     }
     None
 }
@@ -103,6 +94,29 @@ pub(super) fn environment_radiance(scene: &Scene, p: Vec3<f32>, d: Vec3<f32>) ->
         .lights
         .environment()
         .map_or([0.0; 3], |e| e.radiance_from(p, d))
+}
+
+impl<'a> Vertex<'a> {
+    /// The vertex at `point`, as a ray that comes straight from the viewer finds it.
+    pub(super) fn new(
+        scene: &Scene,
+        point: SurfacePoint,
+        wo_world: Vec3<f32>,
+        shading: Shading<'a>,
+    ) -> Self {
+        Self {
+            frame: shading.frame,
+            wo: shading.frame.to_local(wo_world),
+            wo_world,
+            bounds_a_body: scene.bounds_a_body(&shading),
+            model: shading.model,
+            transmits: shading.transmits,
+            albedo: shading.albedo,
+            material: scene.geometry.instances()[point.instance as usize].material,
+            distance: point.t,
+            point,
+        }
+    }
 }
 
 impl Vertex<'_> {
@@ -131,7 +145,7 @@ impl Vertex<'_> {
     ///
     /// A function that only reflects needs `wi` and the viewer on the same side of the true surface. For one that transmits it is the
     /// true surface that decides whether light passes, and `wi` has to lie on the same side of the frame.
-    fn admits(&self, wi: Vec3<f32>, local: Vec3<f32>) -> bool {
+    pub(super) fn admits(&self, wi: Vec3<f32>, local: Vec3<f32>) -> bool {
         if self.transmits {
             wi.dot(self.point.ng) * local.z > 0.0
         } else {

@@ -7,6 +7,7 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+mod batch;
 mod bounds;
 mod kernel;
 mod mesh_tree;
@@ -23,6 +24,7 @@ mod tree;
 mod triangle;
 mod walk;
 
+pub use batch::Surfaces;
 pub use bounds::Aabb;
 pub use sample::AreaSample;
 pub use shape::{Instance, Shape};

@@ -50,12 +50,7 @@ impl SurfacePoint {
     /// rounding of the new origin (Wächter and Binder 2019, Ray Tracing Gems, chapter 6, has the problem).
     #[inline]
     pub fn offset_origin(&self, direction: Vec3<f32>) -> Vec3<f32> {
-        let side = if direction.dot(self.ng) < 0.0 {
-            -2.0
-        } else {
-            2.0
-        };
-        self.p + self.ng * (side * self.error)
+        offset_origin(self.p, self.ng, self.error, direction)
     }
 
     /// The endless ray that leaves in `direction` (unit), and doesn't meet the surface it leaves.
@@ -68,23 +63,40 @@ impl SurfacePoint {
     /// target where that is more. If the target is p itself the ray hits nothing.
     #[inline]
     pub fn spawn_ray_to(&self, target: Vec3<f32>) -> Ray {
-        let origin = self.offset_origin(target - self.p);
-        let way = target - origin;
-        let distance = way.length();
-        let largest = target.x.abs().max(target.y.abs()).max(target.z.abs());
-        let short = (distance * SHORT).max(largest * (16.0 * f32::EPSILON));
-        if distance > short {
-            Ray {
-                origin,
-                direction: way * (1.0 / distance),
-                t_max: distance - short,
-            }
-        } else {
-            Ray {
-                origin,
-                direction: way,
-                t_max: 0.0,
-            }
+        ray_to(self.offset_origin(target - self.p), target)
+    }
+}
+
+/// [`SurfacePoint::offset_origin`].
+#[inline(always)]
+pub(super) fn offset_origin(
+    p: Vec3<f32>,
+    ng: Vec3<f32>,
+    error: f32,
+    direction: Vec3<f32>,
+) -> Vec3<f32> {
+    let side = if direction.dot(ng) < 0.0 { -2.0 } else { 2.0 };
+    p + ng * (side * error)
+}
+
+/// [`SurfacePoint::spawn_ray_to`], from the origin off the surface.
+#[inline(always)]
+pub(super) fn ray_to(origin: Vec3<f32>, target: Vec3<f32>) -> Ray {
+    let way = target - origin;
+    let distance = way.length();
+    let largest = target.x.abs().max(target.y.abs()).max(target.z.abs());
+    let short = (distance * SHORT).max(largest * (16.0 * f32::EPSILON));
+    if distance > short {
+        Ray {
+            origin,
+            direction: way * (1.0 / distance),
+            t_max: distance - short,
+        }
+    } else {
+        Ray {
+            origin,
+            direction: way,
+            t_max: 0.0,
         }
     }
 }

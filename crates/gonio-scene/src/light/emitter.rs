@@ -90,6 +90,8 @@ impl Emitter {
     ///
     /// The emitter itself may lie in between: a shadow ray tells.
     ///
+    /// - `from`: the point and the bound on its error, as [`SurfacePoint`] has them
+    ///
     /// Nothing if `from` lies in the plane of a rectangle, as far as its error lets one say. A point on the rectangle itself
     /// may by rounding be on either side of it, and from just off its front the rectangle fills a hemisphere: its back
     /// would seem lit by its front.
@@ -97,13 +99,13 @@ impl Emitter {
     pub fn sample(
         &self,
         geometry: &Geometry,
-        from: &SurfacePoint,
+        (from, error): (Vec3<f32>, f32),
         u_select: f32,
         u: [f32; 2],
     ) -> Option<Seen> {
-        let eye = from.p.to_f64();
+        let eye = from.to_f64();
         let at = |wi: Vec3<f64>, t: f64, x: f64, y: f64| {
-            let ray = Ray::new(from.p, wi.to_f32());
+            let ray = Ray::new(from, wi.to_f32());
             let hit = Hit {
                 t: t as f32,
                 instance: self.instance,
@@ -136,7 +138,7 @@ impl Emitter {
                 edge_y,
             } => {
                 let height = (eye - *corner).dot(edge_x.cross(*edge_y).normalize());
-                if height.abs() <= f64::from(from.error) {
+                if height.abs() <= f64::from(error) {
                     return None;
                 }
                 let seen = SphericalRectangle::new(*corner, *edge_x, *edge_y, eye);

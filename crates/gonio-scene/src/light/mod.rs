@@ -4,10 +4,12 @@
 //! extended ones an integral, Lr = ∫ Li f cosθ dω. [`Lights`] serves both: [`Lights::each`] enumerates the lights for sums,
 //! [`Lights::sample`] chooses one and a direction for the integral, with the exact density per solid angle.
 
+mod batch;
 mod emitter;
 mod punctual;
 mod select;
 
+pub use batch::LightSamples;
 pub use punctual::SpotCone;
 pub use select::{LightRef, Lights};
 

@@ -126,8 +126,21 @@ impl Lights {
         u_select: f32,
         u: [f32; 2],
     ) -> Option<LightSample> {
+        self.sample_at(guide, from.p, from.error, u_select, u)
+    }
+
+    /// As [`Lights::sample_by`], from a point that is known to `error`, [`SurfacePoint::error`].
+    #[inline]
+    pub(super) fn sample_at(
+        &self,
+        guide: Guide,
+        p: Vec3<f32>,
+        error: f32,
+        u_select: f32,
+        u: [f32; 2],
+    ) -> Option<LightSample> {
         let (light, probability, rest) = self.choose(u_select)?;
-        let mut sample = self.sample_one(guide, light.index, from, rest, u)?;
+        let mut sample = self.sample_one(guide, light.index, (p, error), rest, u)?;
         sample.pdf *= probability;
         (sample.pdf > 0.0).then_some(sample)
     }
@@ -225,14 +238,14 @@ impl Lights {
         &self,
         guide: Guide,
         index: u32,
-        from: &SurfacePoint,
+        (from, error): (Vec3<f32>, f32),
         u_select: f32,
         u: [f32; 2],
     ) -> Option<LightSample> {
         let light = &self.lights[index as usize];
         let found = match (light, &self.emitters[index as usize]) {
             (Light::Environment(e), _) => {
-                let s = e.sample_from_by(guide, from.p, u);
+                let s = e.sample_from_by(guide, from, u);
                 LightSample {
                     wi: s.wi,
                     target: LightTarget::Infinite,
@@ -243,7 +256,7 @@ impl Lights {
                 }
             }
             (_, Some(emitter)) => {
-                let seen = emitter.sample(&self.geometry, from, u_select, u)?;
+                let seen = emitter.sample(&self.geometry, (from, error), u_select, u)?;
                 LightSample {
                     wi: seen.wi,
                     target: LightTarget::Point(seen.point.p),
@@ -253,7 +266,7 @@ impl Lights {
                     light: index,
                 }
             }
-            _ => illuminate(light, index, from.p)?,
+            _ => illuminate(light, index, from)?,
         };
         let lit = found.radiance.iter().any(|&r| r > 0.0);
         (lit && found.pdf > 0.0 && found.pdf.is_finite()).then_some(found)
@@ -291,6 +304,7 @@ impl<'a> LightRef<'a> {
         u_select: f32,
         u: [f32; 2],
     ) -> Option<LightSample> {
+        let from = (from.p, from.error);
         self.lights.sample_one(guide, self.index, from, u_select, u)
     }
 

@@ -4,7 +4,7 @@ mod input;
 mod shading;
 
 pub use input::{Channels, TextureInput};
-pub use shading::Shading;
+pub use shading::{Shading, facing_frame};
 
 use crate::{SceneError, SurfacePoint, Texture};
 use gonio_brdf::{Brdf, BrdfError, Kind, Model, ModelSpec, ParameterSlot, Value};
@@ -217,6 +217,22 @@ impl Material {
             model.set_parameter(binding.slot, binding.base);
         }
         Cow::Owned(model)
+    }
+
+    /// The reflection function if it is the same all over the surface, with the mesh's own normals, and the surface hides all that is
+    /// behind it: then nothing but [`SurfacePoint::ns`] and [`SurfacePoint::tangent`] distinguishes its points.
+    pub fn even_model(&self) -> Option<&Model<f32, 3>> {
+        let even = self.bindings.is_empty()
+            && self.normal_map.is_none()
+            && self.second_normal.is_none()
+            && !self.along_bitangent
+            && self.opacity.is_opaque();
+        even.then_some(&self.model)
+    }
+
+    /// About the share of light that it reflects, textures left out.
+    pub fn albedo(&self) -> [f32; 3] {
+        self.albedo
     }
 
     /// Whether light may pass through the surface somewhere.

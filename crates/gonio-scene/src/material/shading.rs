@@ -3,7 +3,7 @@
 use super::{Binding, Material, NormalMap};
 use crate::SurfacePoint;
 use gonio_brdf::{Brdf, Model};
-use gonio_num::{Frame, Vec3};
+use gonio_num::{Frame, Real, Vec3};
 use std::borrow::Cow;
 
 /// Smallest cosine between the direction to the viewer and the shading normal on the viewer's side.
@@ -58,11 +58,8 @@ impl Material {
             Cow::Owned(model)
         };
         let behind = point.ng.dot(wo) < 0.0;
-        let mut normal = facing(bent_normal(point, self.normal_map.as_ref()), point.ng, wo);
-        if transmits && behind {
-            normal = -normal;
-        }
-        let mut frame = Frame::from_normal_tangent(normal, point.tangent);
+        let bent = bent_normal(point, self.normal_map.as_ref());
+        let mut frame = facing_frame(bent, point.ng, point.tangent, wo, transmits);
         if self.along_bitangent && frame.t.dot(point.bitangent()) < 0.0 {
             frame.t = -frame.t;
         }
@@ -119,14 +116,28 @@ impl Binding {
 }
 
 /// The front-side normal `n` of a surface with geometric normal `ng`, on the side of `wo` and in its hemisphere.
-fn facing(n: Vec3<f32>, ng: Vec3<f32>, wo: Vec3<f32>) -> Vec3<f32> {
-    let n = if ng.dot(wo) < 0.0 { -n } else { n };
+#[inline(always)]
+fn facing<R: Real>(n: Vec3<R>, ng: Vec3<R>, wo: Vec3<R>) -> Vec3<R> {
+    let n = Vec3::select(ng.dot(wo).lt(R::zero()), -n, n);
     let cos = n.dot(wo);
-    if cos >= MIN_COS {
-        n
-    } else {
-        (n + wo * (MIN_COS - cos)).normalize()
+    let least = R::lit(f64::from(MIN_COS));
+    Vec3::select(least.le(cos), n, (n + wo * (least - cos)).normalize())
+}
+
+/// The frame that [`Material::shade`] gives a surface with these normals, shading and geometric, and this tangent, seen from `wo`.
+#[inline(always)]
+pub fn facing_frame<R: Real>(
+    ns: Vec3<R>,
+    ng: Vec3<R>,
+    tangent: Vec3<R>,
+    wo: Vec3<R>,
+    transmits: bool,
+) -> Frame<R> {
+    let mut normal = facing(ns, ng, wo);
+    if transmits {
+        normal = Vec3::select(ng.dot(wo).lt(R::zero()), -normal, normal);
     }
+    Frame::from_normal_tangent(normal, tangent)
 }
 
 #[cfg(test)]

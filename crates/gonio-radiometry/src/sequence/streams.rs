@@ -1,0 +1,197 @@
+//! [`SampleStreams`], the numbers of many samples at once.
+
+use super::{SampleStream, SamplerKind, independent, padded};
+use gonio_num::dispatch::{Kernel, dispatch};
+
+/// Many [`SampleStream`]s of one kind, which draw from the same dimension together: the same numbers, to the bit.
+///
+/// ```
+/// use gonio_radiometry::sequence::{SampleStream, SampleStreams, SamplerKind};
+/// let mut streams = SampleStreams::new(SamplerKind::Sobol);
+/// for sample in 0..5 {
+///     streams.push(&SampleStream::new(SamplerKind::Sobol, 7, 1234, sample));
+/// }
+/// let (mut x, mut y) = ([0.0; 5], [0.0; 5]);
+/// streams.draw(2, [&mut x, &mut y]);
+/// let mut third = SampleStream::new(SamplerKind::Sobol, 7, 1234, 3);
+/// third.seek(2);
+/// assert_eq!([x[3], y[3]], third.next_2d());
+/// ```
+#[derive(Debug, Clone)]
+pub struct SampleStreams {
+    kind: SamplerKind,
+    keys: Vec<u64>,
+    reversed_indices: Vec<u32>,
+}
+
+impl SampleStreams {
+    /// None yet.
+    pub fn new(kind: SamplerKind) -> Self {
+        Self {
+            kind,
+            keys: Vec::new(),
+            reversed_indices: Vec::new(),
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.keys.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.keys.is_empty()
+    }
+
+    /// Takes all away.
+    pub fn clear(&mut self) {
+        self.keys.clear();
+        self.reversed_indices.clear();
+    }
+
+    /// Adds one.
+    ///
+    /// # Panics
+    /// If it is of another kind.
+    #[inline]
+    pub fn push(&mut self, stream: &SampleStream) {
+        assert_eq!(stream.kind, self.kind, "streams of two kinds don't mix");
+        self.keys.push(stream.key);
+        self.reversed_indices.push(stream.reversed_index);
+    }
+
+    /// Adds number `i` of other streams of the same kind.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[inline(always)]
+    pub fn push_from(&mut self, others: &Self, i: usize) {
+        self.keys.push(others.keys[i]);
+        self.reversed_indices.push(others.reversed_indices[i]);
+    }
+
+    /// Becomes those of `others` that `order` names, in its order.
+    ///
+    /// # Panics
+    /// If an index is out of range.
+    pub fn gather(&mut self, others: &Self, order: &[u32]) {
+        self.kind = others.kind;
+        self.clear();
+        for &i in order {
+            self.push_from(others, i as usize);
+        }
+    }
+
+    /// Number `i` as a stream of its own, at dimension 0.
+    ///
+    /// # Panics
+    /// If there is none.
+    pub fn get(&self, i: usize) -> SampleStream {
+        SampleStream {
+            kind: self.kind,
+            key: self.keys[i],
+            reversed_index: self.reversed_indices[i],
+            dimension: 0,
+        }
+    }
+
+    /// The `D` ≤ 3 numbers that each stream draws together at `dimension`, one slice a number.
+    ///
+    /// # Panics
+    /// If a slice is shorter than there are streams.
+    pub fn draw<const D: usize>(&self, dimension: u32, out: [&mut [f32]; D]) {
+        let count = self.len();
+        let out = out.map(|slice| &mut slice[..count]);
+        dispatch(Draw {
+            streams: self,
+            dimension,
+            out,
+        });
+    }
+}
+
+struct Draw<'a, const D: usize> {
+    streams: &'a SampleStreams,
+    dimension: u32,
+    out: [&'a mut [f32]; D],
+}
+
+impl<const D: usize> Kernel for Draw<'_, D> {
+    type Output = ();
+
+    /// Plain loops over whole numbers, which a compiler turns into vector instructions by itself.
+    #[inline(always)]
+    fn run<const L: usize>(self) {
+        let Self {
+            streams,
+            dimension,
+            out,
+        } = self;
+        let (keys, indices) = (&streams.keys[..], &streams.reversed_indices[..]);
+        let count = keys.len();
+        let mut at = 0;
+        while at < count {
+            let step = (count - at).min(L);
+            let (mut key, mut index) = ([0_u64; L], [0_u32; L]);
+            key[..step].copy_from_slice(&keys[at..at + step]);
+            index[..step].copy_from_slice(&indices[at..at + step]);
+            let mut drawn = [[0.0_f32; L]; D];
+            for lane in 0..L {
+                let numbers = match streams.kind {
+                    SamplerKind::Independent => independent::<D>(key[lane], dimension),
+                    SamplerKind::Sobol => padded::<D>(key[lane], index[lane], dimension),
+                };
+                for d in 0..D {
+                    drawn[d][lane] = numbers[d];
+                }
+            }
+            for d in 0..D {
+                out[d][at..at + step].copy_from_slice(&drawn[d][..step]);
+            }
+            at += L;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_streams_draw_what_one_draws() {
+        for kind in [SamplerKind::Independent, SamplerKind::Sobol] {
+            for count in [0, 1, 7, 16, 61] {
+                let alone: Vec<SampleStream> = (0..count)
+                    .map(|k| SampleStream::new(kind, 3, k / 5, k % 5 + 1000))
+                    .collect();
+                let mut streams = SampleStreams::new(kind);
+                alone.iter().for_each(|s| streams.push(s));
+                let mut drawn = vec![0.0; 3 * count as usize];
+                let (x, yz) = drawn.split_at_mut(count as usize);
+                let (y, z) = yz.split_at_mut(count as usize);
+                streams.draw(11, [&mut *x, &mut *y, &mut *z]);
+                for (i, stream) in alone.iter().enumerate() {
+                    let mut stream = *stream;
+                    stream.seek(11);
+                    assert_eq!([x[i], y[i], z[i]], stream.next_3d(), "{kind:?} {i}");
+                    assert_eq!(streams.get(i).dimension(), 0);
+                }
+                streams.draw(11, [&mut *x]);
+                streams.draw(12, [&mut *y, &mut *z]);
+                for (i, stream) in alone.iter().enumerate() {
+                    let mut stream = *stream;
+                    stream.seek(11);
+                    assert_eq!(x[i], stream.next_1d());
+                    assert_eq!([y[i], z[i]], stream.next_2d());
+                }
+                let backwards: Vec<u32> = (0..count).rev().collect();
+                let mut turned = SampleStreams::new(SamplerKind::default());
+                turned.gather(&streams, &backwards);
+                for (i, stream) in alone.iter().rev().enumerate() {
+                    assert_eq!(turned.get(i), *stream);
+                }
+            }
+        }
+    }
+}

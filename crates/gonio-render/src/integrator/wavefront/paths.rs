@@ -1,0 +1,75 @@
+//! [`Paths`], the paths of a wave between two surfaces.
+
+use gonio_num::Vectors;
+use gonio_radiometry::sequence::{SampleStreams, SamplerKind};
+use gonio_scene::Ray;
+
+/// Paths on their way, as a structure of arrays.
+#[derive(Debug)]
+pub(super) struct Paths {
+    /// Which sample of the wave each belongs to.
+    pub id: Vec<u32>,
+    pub streams: SampleStreams,
+    pub origin: Vectors,
+    pub direction: Vectors,
+    pub throughput: [Vec<f32>; 3],
+    /// What takes the scaling of radiance by n² out of the throughput, for roulette; empty where nothing scales.
+    pub unscaling: [Vec<f32>; 3],
+    /// The surface point that each has left: what lights were sampled from.
+    pub from: Vectors,
+    /// The density with which the reflection function drew the direction; ∞ for a single direction, which no light sample finds.
+    pub pdf: Vec<f32>,
+}
+
+impl Paths {
+    pub fn new(kind: SamplerKind) -> Self {
+        Self {
+            id: Vec::new(),
+            streams: SampleStreams::new(kind),
+            origin: Vectors::default(),
+            direction: Vectors::default(),
+            throughput: [const { Vec::new() }; 3],
+            unscaling: [const { Vec::new() }; 3],
+            from: Vectors::default(),
+            pdf: Vec::new(),
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.id.len()
+    }
+
+    /// Makes room for up to `most` paths, of which there are none yet.
+    pub fn begin(&mut self, most: usize) {
+        self.id.clear();
+        self.streams.clear();
+        for v in [&mut self.origin, &mut self.direction, &mut self.from] {
+            v.resize(most);
+        }
+        for column in self.throughput.iter_mut().chain(&mut self.unscaling) {
+            column.clear();
+        }
+        self.pdf.clear();
+    }
+
+    /// Ends what [`Paths::begin`] began.
+    pub fn end(&mut self) {
+        let count = self.len();
+        for v in [&mut self.origin, &mut self.direction, &mut self.from] {
+            v.resize(count);
+        }
+    }
+
+    pub fn ray(&self, i: usize) -> Ray {
+        Ray::new(self.origin.get(i), self.direction.get(i))
+    }
+
+    pub fn throughput(&self, i: usize) -> [f32; 3] {
+        [0, 1, 2].map(|k| self.throughput[k][i])
+    }
+
+    /// 1 where nothing scales.
+    pub fn unscaling(&self, i: usize) -> [f32; 3] {
+        [0, 1, 2].map(|k| self.unscaling[k].get(i).copied().unwrap_or(1.0))
+    }
+}
