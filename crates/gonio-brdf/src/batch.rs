@@ -4,10 +4,13 @@
 //! A batch is several times faster than single calls for the closed-form models. A model made of others has a batch of each part
 //! evaluated for a group of directions at a time, and `Table` reads its memory lane by lane, but for adaptive
 //! tables, which have batches of their own.
+//!
+//! The functions of three components that a renderer calls, [`eval_and_pdf`] and [`sample`], are compiled with this crate; the generic ones
+//! with whoever calls them, which takes minutes.
 
 use crate::model::{Castable, Composite, Visitor};
 use crate::{Brdf, Model, Sample};
-use gonio_num::dispatch::{InstructionSet, Kernel, dispatch_on};
+use gonio_num::dispatch::{InstructionSet, Kernel, dispatch_wide};
 use gonio_num::lanes::Lanes;
 use gonio_num::{Real, Vec3};
 
@@ -94,11 +97,12 @@ pub fn pdf<const N: usize>(
 ///
 /// # Panics
 /// If the lengths differ.
-pub fn eval_and_pdf<const N: usize>(
-    model: &Model<f32, N>,
+#[inline(never)]
+pub fn eval_and_pdf(
+    model: &Model<f32, 3>,
     wi: Directions<'_>,
     wo: Directions<'_>,
-    result: [&mut [f32]; N],
+    result: [&mut [f32]; 3],
     pdf: &mut [f32],
 ) {
     eval_and_pdf_on(InstructionSet::detect(), model, wi, wo, result, pdf);
@@ -108,12 +112,8 @@ pub fn eval_and_pdf<const N: usize>(
 ///
 /// # Panics
 /// If the lengths differ.
-pub fn sample<const N: usize>(
-    model: &Model<f32, N>,
-    wo: Directions<'_>,
-    u: [&[f32]; 3],
-    result: Samples<'_, N>,
-) {
+#[inline(never)]
+pub fn sample(model: &Model<f32, 3>, wo: Directions<'_>, u: [&[f32]; 3], result: Samples<'_, 3>) {
     sample_on(InstructionSet::detect(), model, wo, u, result);
 }
 
@@ -143,7 +143,7 @@ pub fn eval_on<const N: usize>(
         all.eval_batch(set, factor, [wi, wo], three(result));
         return;
     }
-    model.visit(On(set, Eval { wi, wo, result }));
+    run(set, model, Eval { wi, wo, result });
 }
 
 /// As [`pdf`], under a given instruction set.
@@ -165,7 +165,7 @@ pub fn pdf_on<const N: usize>(
         all.pdf_batch(set, [wi, wo], result);
         return;
     }
-    model.visit(On(set, Pdf { wi, wo, result }));
+    run(set, model, Pdf { wi, wo, result });
 }
 
 /// As [`eval_and_pdf`], under a given instruction set.
@@ -196,15 +196,13 @@ pub fn eval_and_pdf_on<const N: usize>(
         all.pdf_batch(set, [wi, wo], pdf);
         return;
     }
-    model.visit(On(
-        set,
-        EvalAndPdf {
-            wi,
-            wo,
-            result,
-            pdf,
-        },
-    ));
+    let batch = EvalAndPdf {
+        wi,
+        wo,
+        result,
+        pdf,
+    };
+    run(set, model, batch);
 }
 
 /// As [`sample`], under a given instruction set.
@@ -241,7 +239,7 @@ pub fn sample_on<const N: usize>(
         all.sample_batch(set, factor, wo, u, result);
         return;
     }
-    model.visit(On(set, Draw { wo, u, result }));
+    run(set, model, Draw { wo, u, result });
 }
 
 /// The slices of three colour components.
@@ -270,9 +268,83 @@ trait Batch<const N: usize> {
 /// of its own.
 struct On<T>(InstructionSet, T);
 
+/// One direction after the other, for the oldest processors of a kind whose others have more: their lanes wouldn't be worth the code.
+struct Singly<'a, const N: usize>(&'a Model<f32, N>);
+
+/// Whether lanes under this instruction set are worth the code.
+fn has_lanes(set: InstructionSet) -> bool {
+    set != InstructionSet::Baseline || cfg!(not(target_arch = "x86_64"))
+}
+
+impl<const N: usize, const L: usize> Brdf<Lanes<L>, N> for Singly<'_, N> {
+    fn eval(&self, wi: Vec3<Lanes<L>>, wo: Vec3<Lanes<L>>) -> [Lanes<L>; N] {
+        let mut f = [Lanes::splat(0.0); N];
+        for lane in 0..L {
+            let one = self.0.eval(wi.extract(lane), wo.extract(lane));
+            for k in 0..N {
+                f[k].0[lane] = one[k];
+            }
+        }
+        f
+    }
+
+    fn pdf(&self, wi: Vec3<Lanes<L>>, wo: Vec3<Lanes<L>>) -> Lanes<L> {
+        let mut pdf = Lanes::splat(0.0);
+        for lane in 0..L {
+            pdf.0[lane] = self.0.pdf(wi.extract(lane), wo.extract(lane));
+        }
+        pdf
+    }
+
+    fn eval_and_pdf(&self, wi: Vec3<Lanes<L>>, wo: Vec3<Lanes<L>>) -> ([Lanes<L>; N], Lanes<L>) {
+        let (mut f, mut pdf) = ([Lanes::splat(0.0); N], Lanes::splat(0.0));
+        for lane in 0..L {
+            let (one, density) = self.0.eval_and_pdf(wi.extract(lane), wo.extract(lane));
+            for k in 0..N {
+                f[k].0[lane] = one[k];
+            }
+            pdf.0[lane] = density;
+        }
+        (f, pdf)
+    }
+
+    fn sample(&self, wo: Vec3<Lanes<L>>, u: [Lanes<L>; 3]) -> Sample<Lanes<L>, N> {
+        let mut s = Sample::<Lanes<L>, N>::none();
+        for lane in 0..L {
+            let one = self.0.sample(wo.extract(lane), u.map(|u| u.0[lane]));
+            s.wi.x.0[lane] = one.wi.x;
+            s.wi.y.0[lane] = one.wi.y;
+            s.wi.z.0[lane] = one.wi.z;
+            for k in 0..N {
+                s.weight[k].0[lane] = one.weight[k];
+            }
+            s.pdf.0[lane] = one.pdf;
+            s.delta.0[lane] = one.delta;
+        }
+        s
+    }
+
+    fn albedo_estimate(&self, wo: Vec3<Lanes<L>>) -> Lanes<L> {
+        let mut estimate = Lanes::splat(0.0);
+        for lane in 0..L {
+            estimate.0[lane] = self.0.albedo_estimate(wo.extract(lane));
+        }
+        estimate
+    }
+}
+
+/// Runs a batch of a model.
+fn run<T: Batch<N>, const N: usize>(set: InstructionSet, model: &Model<f32, N>, batch: T) {
+    if has_lanes(set) {
+        model.visit(On(set, batch));
+    } else {
+        batch.run::<8, _>(&Singly(model));
+    }
+}
+
 impl<T: Batch<N>, const N: usize> Visitor<f32, N> for On<T> {
     fn visit<B: Castable<f32, N>>(self, model: &B) {
-        dispatch_on(self.0, Chosen(model, self.1));
+        dispatch_wide(self.0, Chosen(model, self.1));
     }
 
     fn visit_composite<C: Composite<f32, N>>(self, model: &C) {
@@ -349,7 +421,7 @@ impl<const N: usize> Brdf<Group, N> for Part<'_, N> {
             wo,
             result: &mut result.0,
         };
-        self.model.visit(On(self.set, work));
+        run(self.set, self.model, work);
         result
     }
 

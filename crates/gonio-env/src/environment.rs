@@ -32,7 +32,7 @@ pub struct Environment {
     sin_yaw: f32,
     cos_yaw: f32,
     pub(crate) scale: [f32; 3],
-    proxy: Option<Proxy>,
+    pub(crate) proxy: Option<Proxy>,
 }
 
 #[derive(Debug, Clone)]
@@ -47,9 +47,9 @@ pub(crate) struct Picture {
     pub map: Arc<Map>,
     method: SamplingMethod,
     /// `None` if the picture is black.
-    table: Option<SphereTable>,
+    pub table: Option<SphereTable>,
     /// Density over luminance of the unscaled picture, where the density is the luminance itself: in the lat-long layout.
-    density_of_luminance: Option<f64>,
+    pub density_of_luminance: Option<f64>,
     /// For [`Guide::Compensated`], made when first asked for; `None` in it if nothing exceeds the mean.
     compensated: OnceLock<Option<SphereTable>>,
 }
@@ -195,16 +195,25 @@ impl Environment {
         Ok(self)
     }
 
+    /// Sine and cosine of the yaw.
+    #[inline(always)]
+    fn turn<R: Real>(&self) -> (R, R) {
+        (
+            R::lit(f64::from(self.sin_yaw)),
+            R::lit(f64::from(self.cos_yaw)),
+        )
+    }
+
     /// World to the picture's own frame.
     #[inline(always)]
-    fn to_local(&self, d: Vec3<f32>) -> Vec3<f32> {
-        let (s, c) = (self.sin_yaw, self.cos_yaw);
+    pub(crate) fn to_local<R: Real>(&self, d: Vec3<R>) -> Vec3<R> {
+        let (s, c) = self.turn::<R>();
         Vec3::new(c * d.x - s * d.z, d.y, s * d.x + c * d.z)
     }
 
     #[inline(always)]
-    fn to_world(&self, d: Vec3<f32>) -> Vec3<f32> {
-        let (s, c) = (self.sin_yaw, self.cos_yaw);
+    pub(crate) fn to_world<R: Real>(&self, d: Vec3<R>) -> Vec3<R> {
+        let (s, c) = self.turn::<R>();
         Vec3::new(c * d.x + s * d.z, d.y, c * d.z - s * d.x)
     }
 
@@ -463,7 +472,7 @@ impl Picture {
         }
     }
 
-    fn compensated(&self) -> Option<&SphereTable> {
+    pub fn compensated(&self) -> Option<&SphereTable> {
         let made = self
             .compensated
             .get_or_init(|| self.table.as_ref()?.compensated(self.method));

@@ -30,6 +30,7 @@
 //!
 //! Sources: Blinn & Newell 1976; Debevec 1998; Pharr, Jakob & Humphreys 2023, §12.5.
 
+mod batch;
 mod environment;
 mod error;
 mod info;
@@ -46,6 +47,7 @@ pub mod sky;
 pub mod test_image;
 mod texels;
 
+pub use batch::EnvSamples;
 pub use environment::{EnvSample, Environment};
 pub use error::EnvError;
 pub use info::{EnvInfo, Peak};

@@ -5,7 +5,8 @@ use crate::projection::disc_from_uv;
 use crate::texels::{self, Defects, Remedy};
 use crate::{EnvError, Layout, luminance};
 use gonio_image::Image;
-use gonio_num::Vec3;
+use gonio_num::lanes::Lanes;
+use gonio_num::{Real, Vec3};
 use std::path::{Path, PathBuf};
 
 /// A picture of radiance: at least one texel, every one finite and ≥ 0.
@@ -204,6 +205,40 @@ impl Map {
             let high = t[0][c] * gu + t[1][c] * b.fu;
             let low = l[0][c] * gu + l[1][c] * b.fu;
             rgb[c] = high * gv + low * b.fv;
+        }
+        rgb
+    }
+
+    /// [`Map::radiance_in`] at the picture coordinates `uv` of each lane.
+    #[inline(always)]
+    pub fn radiances<const L: usize>(&self, uv: [Lanes<L>; 2]) -> [Lanes<L>; 3] {
+        let zero = Lanes([0.0; L]);
+        let mut texels = [[zero; 3]; 4];
+        let (mut fu, mut fv) = (zero, zero);
+        for lane in 0..L {
+            let b = self.cell([uv[0].0[lane], uv[1].0[lane]]);
+            let (top, bottom) = (b.top * self.width, b.bottom * self.width);
+            let corners = [
+                top + b.left,
+                top + b.right,
+                bottom + b.left,
+                bottom + b.right,
+            ];
+            for k in 0..4 {
+                let texel = &self.texels[corners[k]];
+                for c in 0..3 {
+                    texels[k][c].0[lane] = texel[c];
+                }
+            }
+            fu.0[lane] = b.fu;
+            fv.0[lane] = b.fv;
+        }
+        let (gu, gv) = (Lanes::one() - fu, Lanes::one() - fv);
+        let mut rgb = [zero; 3];
+        for c in 0..3 {
+            let high = texels[0][c] * gu + texels[1][c] * fu;
+            let low = texels[2][c] * gu + texels[3][c] * fu;
+            rgb[c] = high * gv + low * fv;
         }
         rgb
     }

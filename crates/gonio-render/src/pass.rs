@@ -1,7 +1,7 @@
 //! [`take_pass`]: a range of samples of every pixel.
 
 use crate::film::{self, Film, FilmSample, PixelSums, Rejected};
-use crate::integrator::wavefront::{WAVE, Wavefront};
+use crate::integrator::wavefront::{Plan, WAVE, Wavefront};
 use crate::{RayCounts, RenderOptions};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::{SampleStream, SampleStreams, SamplerKind};
@@ -17,11 +17,12 @@ pub(crate) fn take_pass(
     range: std::ops::Range<u32>,
 ) -> RayCounts {
     let rows: Vec<&mut [PixelSums]> = film.rows_mut().collect();
+    let plan = Plan::new(scene, &options.integrator, options.sampler);
     let parts: Vec<(RayCounts, Rejected)> = rows
         .into_par_iter()
         .enumerate()
         .map_init(
-            || Wavefront::new(scene, &options.integrator, options.sampler).map(Row::of),
+            || plan.as_ref().map(Row::new),
             |waves, (y, row)| match waves {
                 Some(waves) => waves.take(camera, options, y as u32, row, range.clone()),
                 None => take_row(scene, camera, options, y as u32, row, range.clone()),
@@ -71,9 +72,9 @@ struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
-    fn of(waves: Wavefront<'a>) -> Self {
+    fn new(plan: &'a Plan<'a>) -> Self {
         Self {
-            waves,
+            waves: Wavefront::new(plan),
             places: Vec::new(),
             rays: Vec::new(),
             streams: SampleStreams::new(SamplerKind::default()),
@@ -158,5 +159,172 @@ impl<'a> Surroundings<'a> {
             self.last = (p, self.scene.interior_at(p));
         }
         &self.last.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Integrator;
+    use crate::integrator::{EnvironmentSampling, Path};
+    use gonio_brdf::ModelSpec;
+    use gonio_env::{Environment, Layout};
+    use gonio_image::Image;
+    use gonio_num::Affine3;
+    use gonio_scene::{Light, Material, SceneBuilder, Shape, TriangleMesh};
+    use std::sync::Arc;
+
+    fn material(spec: &str) -> Material {
+        Material::new(spec, &ModelSpec::parse(spec).unwrap()).unwrap()
+    }
+
+    fn placed(scale: [f32; 3], at: [f32; 3]) -> Affine3<f32> {
+        Affine3::scale(scale.into()).then(&Affine3::translation(at.into()))
+    }
+
+    /// A pyramid with the given attributes.
+    fn pyramid(normals: bool, colours: bool) -> Shape {
+        let corners = [
+            [-1.0, 0.0, -1.0],
+            [1.0, 0.0, -1.0],
+            [0.0, 0.0, 1.0],
+            [0.0, 1.5, 0.0],
+        ];
+        let mut mesh = TriangleMesh {
+            positions: corners.map(Into::into).to_vec(),
+            indices: vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]],
+            ..TriangleMesh::default()
+        };
+        if normals {
+            mesh.normals = corners.map(|[x, y, z]| Vec3::new(x, y - 0.3, z)).to_vec();
+            mesh.normals[1] = Vec3::zero();
+        }
+        if colours {
+            mesh.colours = (0..4).map(|k| [0.2 * k as f32, 0.5, 0.9, 1.0]).collect();
+        }
+        Shape::Mesh(Arc::new(mesh))
+    }
+
+    /// One of each shape, each kind of light, and models of all sorts: that reflect, transmit, are discrete, made of others, and differ
+    /// from point to point.
+    fn everything(environment: Environment) -> (Scene, Camera) {
+        let mut scene = SceneBuilder::new("everything");
+        let floor = scene.shape(Shape::Rectangle);
+        let grey = scene.material(material("lambertian:reflectance=0.5"));
+        let level = Affine3::rotation(Vec3::new(1.0, 0.0, 0.0), -std::f32::consts::FRAC_PI_2);
+        let wide = Affine3::scale(Vec3::splat(12.0)).then(&level);
+        scene.instance(floor, wide, grey);
+        let sphere = scene.shape(Shape::Sphere);
+        for (k, spec) in [
+            "ggx:metal=gold,alpha=0.3",
+            "rough-dielectric:alpha=0.2",
+            "smooth-dielectric",
+            "mirror",
+            "sum(lambertian:reflectance=0.3, ggx:alpha=0.1)",
+            "coat(lambertian:reflectance=0.4)",
+            "disney:base_color=0.7/0.2/0.1,clearcoat=0.5",
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let m = scene.material(material(spec));
+            let x = k as f32 - 3.0;
+            scene.instance(
+                sphere,
+                placed([0.45, 0.6, 0.45], [x, 0.6, (k % 2) as f32]),
+                m,
+            );
+        }
+        let mut lamp = material("lambertian:reflectance=0.2");
+        lamp.emission.radiance = [6.0, 5.0, 4.0];
+        let lamp = scene.material(lamp);
+        scene.instance(sphere, placed([0.3; 3], [-1.0, 2.5, 0.0]), lamp);
+        scene.instance(floor, placed([0.5, 0.4, 1.0], [1.0, 2.0, -3.0]), lamp);
+        let plain = scene.shape(pyramid(false, false));
+        let smooth = scene.shape(pyramid(true, false));
+        let coloured = scene.shape(pyramid(true, true));
+        scene.instance(plain, placed([0.5; 3], [-2.0, 0.0, 2.5]), grey);
+        scene.instance(smooth, placed([0.5, -0.5, 0.5], [0.0, 1.0, 2.5]), grey);
+        scene.instance(plain, placed([0.2; 3], [3.0, 1.5, 2.0]), lamp);
+        let mut varied = material("lambertian:reflectance=0.8");
+        varied.bind_vertex_colour("reflectance").unwrap();
+        let varied = scene.material(varied);
+        scene.instance(coloured, placed([0.6; 3], [2.0, 0.0, 2.5]), varied);
+        scene.light(Light::Point {
+            position: Vec3::new(0.0, 3.0, 3.0),
+            intensity: [4.0; 3],
+        });
+        scene.environment(environment);
+        let up = Vec3::new(0.0, 1.0, 0.0);
+        let eye = Vec3::new(0.0, 2.5, 8.0);
+        let camera = Camera::look_at(eye, Vec3::new(0.0, 0.8, 0.0), up, 40.0).unwrap();
+        (scene.build().unwrap(), camera)
+    }
+
+    fn panorama() -> Environment {
+        let image = Image::from_fn(128, 64, |x, y| {
+            let sun = if (x, y) == (30, 12) { 800.0 } else { 1.0 };
+            [0.3, 0.4, 0.5].map(|c| c * sun)
+        });
+        Environment::from_image(image, Layout::LatLong).unwrap()
+    }
+
+    /// Waves are the one path at a time, to the bit: sums, counts of rays, and layers.
+    #[test]
+    fn waves_are_single_paths() {
+        for (environment, guide, sampler, path) in [
+            (
+                panorama(),
+                EnvironmentSampling::Luminance,
+                SamplerKind::Sobol,
+                Path::default(),
+            ),
+            (
+                panorama(),
+                EnvironmentSampling::Compensated,
+                SamplerKind::Independent,
+                Path {
+                    max_bounces: 5,
+                    roulette_after: 0,
+                    ..Path::default()
+                },
+            ),
+            (
+                Environment::uniform([0.3, 0.2, 0.1]),
+                EnvironmentSampling::Luminance,
+                SamplerKind::Sobol,
+                Path {
+                    max_bounces: 0,
+                    ..Path::default()
+                },
+            ),
+        ] {
+            let (scene, camera) = everything(environment);
+            let options = RenderOptions {
+                width: 48,
+                height: 32,
+                sampler,
+                seed: 5,
+                integrator: Integrator::Path(Path {
+                    environment: guide,
+                    ..path
+                }),
+                ..RenderOptions::default()
+            };
+            let plan = Plan::new(&scene, &options.integrator, options.sampler).unwrap();
+            let mut waves = Row::new(&plan);
+            let mut lit = 0;
+            for y in 0..options.height {
+                let mut one = vec![PixelSums::default(); options.width as usize];
+                let mut many = one.clone();
+                let alone = take_row(&scene, &camera, &options, y, &mut one, 3..10);
+                let together = waves.take(&camera, &options, y, &mut many, 3..10);
+                assert_eq!(alone, together, "{guide:?}, row {y}");
+                assert_eq!(one, many, "{guide:?}, row {y}");
+                lit += one.iter().filter(|p| p.radiance[0] > 0.0).count();
+            }
+            // The test would not notice anything in the dark.
+            assert!(lit > 500, "{lit}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 //! This crate is floor 4. It knows where surfaces are and what they are made of; it knows nothing of integrators.
 
 pub mod camera;
+mod double;
 mod error;
 mod files;
 pub mod geometry;

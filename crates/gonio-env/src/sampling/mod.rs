@@ -7,6 +7,7 @@ mod rows;
 mod tree;
 
 use alias::Alias;
+use gonio_num::lanes::Lanes;
 use gonio_num::{Real, Vec3};
 use nodes::Nodes;
 use rows::Rows;
@@ -111,6 +112,20 @@ impl SphereTable {
                 .sample(&self.nodes, u, None)
                 .unwrap_or_else(|| uniform_direction(u)),
         }
+    }
+
+    /// [`SphereTable::sample`] in every lane.
+    #[inline(always)]
+    pub fn samples<const L: usize>(&self, u: [Lanes<L>; 2]) -> Vec3<Lanes<L>> {
+        if let Form::Inversion(rows) = &self.form {
+            return rows.samples(&self.nodes, u);
+        }
+        let mut d = Vec3::splat(Lanes([0.0; L]));
+        for lane in 0..L {
+            let one = self.sample([u[0].0[lane], u[1].0[lane]]);
+            (d.x.0[lane], d.y.0[lane], d.z.0[lane]) = (one.x, one.y, one.z);
+        }
+        d
     }
 
     /// Density over the value relative to the largest.

@@ -1,7 +1,8 @@
 //! [`Nodes`], a piecewise bilinear density over the sphere of directions.
 
 use crate::lookup::Bilinear;
-use gonio_num::{Real, Vec3};
+use gonio_num::lanes::Lanes;
+use gonio_num::{DoubleLanes, Real, Vec3};
 use std::f64::consts::{PI, TAU};
 
 /// Half a step of a 24-bit random number: the smallest u that is used, so that a density that starts from 0 is left
@@ -31,22 +32,89 @@ pub(super) struct Nodes {
     pub scale: f64,
 }
 
-/// The solution t in [0, 1] of ∫₀ᵗ ((1 − s) a + s b) ds = u (a + b) / 2, for a, b ≥ 0 with a + b > 0.
+/// The solution t in [0, 1] of ∫₀ᵗ ((1 − s) a + s b) ds = u (a + b) / 2, for a, b ≥ 0; 1/2 where both are 0.
 #[inline(always)]
-pub(super) fn sample_linear(a: f64, b: f64, u: f64) -> f64 {
-    let root = (a * a + u * (b * b - a * a)).max(0.0).sqrt();
-    (u * (a + b) / (a + root)).min(1.0)
+pub(super) fn sample_linear<R: Real>(a: R, b: R, u: R) -> R {
+    let root = (a * a + u * (b * b - a * a)).safe_sqrt();
+    let some = (a + b).gt(R::zero());
+    let below = R::select(some, a + root, R::one());
+    R::select(some, (u * (a + b) / below).min(R::one()), R::lit(0.5))
 }
 
 /// ∫ sin x dx and ∫ (x − θ₀) sin x dx from θ₀ to θ, of which sin and cos are given.
 #[inline(always)]
-fn integrals(
-    low: f64,
-    (sin_low, cos_low): (f64, f64),
-    high: f64,
-    (sin, cos): (f64, f64),
-) -> [f64; 2] {
+fn integrals<R: Real>(low: R, (sin_low, cos_low): (R, R), high: R, (sin, cos): (R, R)) -> [R; 2] {
     [cos_low - cos, sin - sin_low - (high - low) * cos]
+}
+
+/// What the inversion of a band needs to know of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Band<R> {
+    /// The angle from the zenith at its upper end.
+    pub low: R,
+    /// Sine and cosine there, and at its lower end.
+    pub at_low: (R, R),
+    pub at_high: (R, R),
+    /// Its width as an angle.
+    pub width: R,
+    /// [`Nodes::moments`].
+    pub moments: [R; 2],
+    /// Whether bands are so narrow that a short series gives sines and cosines within one.
+    pub narrow: bool,
+}
+
+impl<R: Real> Band<R> {
+    /// Sine and cosine at the angle `low` + `turn`, 0 ≤ turn ≤ width.
+    ///
+    /// In a narrow band turn < 1/16: the series leave out less than 1/16⁷ / 7! = 7e-13 and 1/16⁸ / 8! = 6e-15.
+    #[inline(always)]
+    fn sin_cos(&self, turn: R) -> (R, R) {
+        if !self.narrow {
+            return (self.low + turn).sin_cos();
+        }
+        let x2 = turn * turn;
+        let (third, fifth) = (R::lit(-1.0 / 6.0), R::lit(1.0 / 120.0));
+        let sin = turn * (R::one() + x2 * (third + x2 * fifth));
+        let (second, fourth, sixth) = (R::lit(-0.5), R::lit(1.0 / 24.0), R::lit(-1.0 / 720.0));
+        let cos = R::one() + x2 * (second + x2 * (fourth + x2 * sixth));
+        let (s, c) = self.at_low;
+        (s * cos + c * sin, c * cos - s * sin)
+    }
+
+    /// The place t in [0, 1] where the running integral of a value that goes linearly in θ from `above` to `below`,
+    /// times sin θ, reaches the fraction `u`; with sin and cos of the angle.
+    ///
+    /// Newton's method on the closed form, from where the product is taken to be linear in θ: one step is the rule.
+    #[inline(always)]
+    pub fn invert(&self, above: R, below: R, u: R) -> (R, [R; 2]) {
+        let Self {
+            low,
+            at_low,
+            at_high,
+            width,
+            ..
+        } = *self;
+        let target = u * (self.moments[0] * above + self.moments[1] * below);
+        // At a pole both ends of the product may be 0: the guess is then the middle.
+        let guess = sample_linear(above * at_low.0, below * at_high.0, u).saturate();
+        let slope = (below - above) / width;
+        let [t] = R::repeat(8, [guess], |_, [t]| {
+            let turn = t * width;
+            let (sin, cos) = self.sin_cos(turn);
+            let [flat, rising] = integrals(low, at_low, low + turn, (sin, cos));
+            let density = (above + slope * turn) * sin * width;
+            let some = density.gt(R::zero());
+            let error = above * flat + slope * rising - target;
+            let quarter = R::lit(0.25) * t;
+            let next = (t - error / R::select(some, density, R::one()))
+                .clamp(quarter, quarter + R::lit(0.75));
+            // Quadratic: what is left is about the square of the step over the place.
+            let far = (R::lit(1e-4) * t.min(R::one() - t)).lt((next - t).abs());
+            ([R::select(some, next, t)], some & far)
+        });
+        let (sin, cos) = self.sin_cos(t * width);
+        (t, [sin, cos])
+    }
 }
 
 impl Nodes {
@@ -158,47 +226,30 @@ impl Nodes {
         (f64::from(value) * self.scale) as f32
     }
 
-    /// The place t in [0, 1] in a band where the running integral of a value that goes linearly in θ from `above` to `below`,
-    /// times sin θ, reaches the fraction `u`; with sin and cos of the angle.
-    ///
-    /// Newton's method on the closed form, from where the product is taken to be linear in θ: one step is the rule.
+    /// What the inversion of a band needs to know of it.
+    #[inline(always)]
+    pub fn band(&self, band: usize) -> Band<f64> {
+        let [low, high] = self.band_ends(band);
+        Band {
+            low,
+            at_low: self.sin_cos[band],
+            at_high: self.sin_cos[band + 1],
+            width: high - low,
+            moments: self.moments[band],
+            narrow: self.is_narrow(),
+        }
+    }
+
+    /// [`Band::narrow`].
+    #[inline(always)]
+    pub fn is_narrow(&self) -> bool {
+        self.height > 50
+    }
+
+    /// [`Band::invert`].
     #[inline(always)]
     pub fn invert_band(&self, band: usize, above: f64, below: f64, u: f64) -> (f64, [f64; 2]) {
-        let [low, high] = self.band_ends(band);
-        let width = high - low;
-        let (at_low, at_high) = (self.sin_cos[band], self.sin_cos[band + 1]);
-        let target = u * self.band_mass(band, above, below);
-        let mut t = sample_linear(above * at_low.0, below * at_high.0, u).clamp(0.0, 1.0);
-        // At a pole both ends of the product may be 0, and the guess is no number.
-        if t.is_nan() {
-            t = 0.5;
-        }
-        let slope = (below - above) / width;
-        for _ in 0..8 {
-            let theta = low + t * width;
-            let (sin, cos) = Real::sin_cos(theta);
-            let [flat, rising] = integrals(low, at_low, theta, (sin, cos));
-            let density = (above + slope * (theta - low)) * sin * width;
-            if density <= 0.0 {
-                break;
-            }
-            let next = (t - (above * flat + slope * rising - target) / density)
-                .clamp(0.25 * t, 0.25 * t + 0.75);
-            let step = next - t;
-            t = next;
-            // Quadratic: what is left is about the square of the step over the place.
-            if step.abs() <= 1e-4 * t.min(1.0 - t) {
-                // The angle is turned by at most 1e-4 more: to second order its sine is right to 1e-13.
-                let turn = step * width;
-                let half = 0.5 * turn * turn;
-                return (
-                    t,
-                    [sin + turn * cos - half * sin, cos - turn * sin - half * cos],
-                );
-            }
-        }
-        let (sin, cos) = Real::sin_cos(low + t * width);
-        (t, [sin, cos])
+        self.band(band).invert(above, below, u)
     }
 
     /// A point of a cell with the cell's share of the density, from `u` in [0, 1]²: u\[1] chooses θ, u\[0] the longitude.
@@ -208,22 +259,33 @@ impl Nodes {
         let [a, b, c, d] = self.corners(band, column);
         let (t, sin_cos) = self.invert_band(band, 0.5 * (a + b), 0.5 * (c + d), u[1]);
         let (left, right) = ((1.0 - t) * a + t * c, (1.0 - t) * b + t * d);
-        let s = if left + right > 0.0 {
-            sample_linear(left, right, u[0])
-        } else {
-            0.5
-        };
+        let s = sample_linear(left, right, u[0]);
         self.direction(column, s, sin_cos)
     }
 
     /// The direction at `s` in [0, 1] of a column and at an angle from the zenith given by its sine and cosine.
     #[inline(always)]
-    pub fn direction(&self, column: usize, s: f64, [sin, cos]: [f64; 2]) -> Vec3<f32> {
-        let turn = (0.5 + column as f64 + s) / self.width as f64;
-        let turn = if turn >= 1.0 { turn - 1.0 } else { turn };
-        let (sin_phi, cos_phi) = Real::sin_cos((TAU * (turn - 0.5)) as f32);
-        let r = sin as f32;
-        Vec3::new(r * sin_phi, cos as f32, -r * cos_phi)
+    pub fn direction(&self, column: usize, s: f64, sin_cos: [f64; 2]) -> Vec3<f32> {
+        let sin_cos = sin_cos.map(|x| DoubleLanes([x]));
+        let (column, s) = (DoubleLanes([column as f64]), DoubleLanes([s]));
+        self.directions::<1>(column, s, sin_cos).extract(0)
+    }
+
+    /// [`Nodes::direction`] in every lane.
+    #[inline(always)]
+    pub fn directions<const L: usize>(
+        &self,
+        column: DoubleLanes<L>,
+        s: DoubleLanes<L>,
+        [sin, cos]: [DoubleLanes<L>; 2],
+    ) -> Vec3<Lanes<L>> {
+        let one = DoubleLanes::one();
+        let turn = (DoubleLanes::lit(0.5) + column + s) / DoubleLanes::lit(self.width as f64);
+        let turn = DoubleLanes::select(one.le(turn), turn - one, turn);
+        let angle = DoubleLanes::lit(TAU) * (turn - DoubleLanes::lit(0.5));
+        let (sin_phi, cos_phi) = angle.to_single().sin_cos();
+        let r = sin.to_single();
+        Vec3::new(r * sin_phi, cos.to_single(), -(r * cos_phi))
     }
 
     /// The mean of the values over the sphere.

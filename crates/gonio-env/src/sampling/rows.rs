@@ -3,8 +3,9 @@
 //! The running integral of an interpolated row is the interpolation of its neighbours' running integrals, so one such table a node
 //! row is all that is stored.
 
-use super::nodes::{Nodes, U_MAX, U_MIN, sample_linear};
-use gonio_num::Vec3;
+use super::nodes::{Band, Nodes, U_MAX, U_MIN, sample_linear};
+use gonio_num::lanes::Lanes;
+use gonio_num::{DoubleLanes, Real, Vec3};
 
 /// Intervals of probability that a node row's guide tells apart.
 const GUIDES: usize = 64;
@@ -22,6 +23,8 @@ pub(super) struct Rows {
     row_mean: Vec<f64>,
     /// Running probability of the bands: `height + 2`, from 0 to 1.
     bands: Vec<f64>,
+    /// For each k of 0..=[`GUIDES`] the band where it reaches k / [`GUIDES`].
+    band_guide: Vec<u32>,
 }
 
 impl Rows {
@@ -60,7 +63,12 @@ impl Rows {
         for b in &mut bands {
             *b /= sum;
         }
+        let band_guide = (0..=GUIDES).map(|k| {
+            let v = k as f64 / GUIDES as f64;
+            (bands.partition_point(|&b| b <= v) - 1).min(height) as u32
+        });
         Self {
+            band_guide: band_guide.collect(),
             running,
             guide,
             row_mean,
@@ -73,33 +81,117 @@ impl Rows {
     /// u\[1\] chooses θ from the zenith down, u\[0\] the longitude; both maps are continuous but for the turn.
     #[inline]
     pub fn sample(&self, nodes: &Nodes, u: [f32; 2]) -> Vec3<f32> {
-        let v = f64::from(u[1]).clamp(U_MIN, U_MAX);
-        let band = (self.bands.partition_point(|&b| b <= v) - 1).min(nodes.height);
-        let (above, below) = nodes.rows_of(band);
-        let inside = (v - self.bands[band]) / (self.bands[band + 1] - self.bands[band]);
-        let (t, sin_cos) =
-            nodes.invert_band(band, self.row_mean[above], self.row_mean[below], inside);
-        let (column, s) =
-            self.sample_turn(nodes, above, below, t, f64::from(u[0]).clamp(U_MIN, U_MAX));
-        nodes.direction(column, s, sin_cos)
+        self.samples::<1>(nodes, u.map(|u| Lanes([u]))).extract(0)
+    }
+
+    /// [`Rows::sample`] in every lane. The searches are made one lane after the other.
+    #[inline(always)]
+    pub fn samples<const L: usize>(&self, nodes: &Nodes, u: [Lanes<L>; 2]) -> Vec3<Lanes<L>> {
+        let (least, most) = (DoubleLanes::lit(U_MIN), DoubleLanes::lit(U_MAX));
+        let v = u[1].to_double().clamp(least, most);
+        let zero = DoubleLanes([0.0; L]);
+        let mut rows = [[0_usize; 2]; L];
+        let (mut start, mut end, mut means) = (zero, zero, [zero; 2]);
+        let mut band = Band {
+            low: zero,
+            at_low: (zero, zero),
+            at_high: (zero, zero),
+            width: zero,
+            moments: [zero; 2],
+            narrow: nodes.is_narrow(),
+        };
+        for lane in 0..L {
+            let chosen = self.band_of(v.0[lane]);
+            let (above, below) = nodes.rows_of(chosen);
+            let one = nodes.band(chosen);
+            rows[lane] = [above, below];
+            start.0[lane] = self.bands[chosen];
+            end.0[lane] = self.bands[chosen + 1];
+            means[0].0[lane] = self.row_mean[above];
+            means[1].0[lane] = self.row_mean[below];
+            band.low.0[lane] = one.low;
+            band.at_low.0.0[lane] = one.at_low.0;
+            band.at_low.1.0[lane] = one.at_low.1;
+            band.at_high.0.0[lane] = one.at_high.0;
+            band.at_high.1.0[lane] = one.at_high.1;
+            band.width.0[lane] = one.width;
+            band.moments[0].0[lane] = one.moments[0];
+            band.moments[1].0[lane] = one.moments[1];
+        }
+        let inside = (v - start) / (end - start);
+        let (t, sin_cos) = band.invert(means[0], means[1], inside);
+        let (column, s) = self.sample_turn(nodes, &rows, t, u[0].to_double().clamp(least, most));
+        nodes.directions(column, s, sin_cos)
+    }
+
+    /// The band where the running probability reaches `v`.
+    #[inline(always)]
+    fn band_of(&self, v: f64) -> usize {
+        let k = (v * GUIDES as f64) as usize;
+        let (mut low, high) = (
+            self.band_guide[k] as usize,
+            self.band_guide[k + 1] as usize + 1,
+        );
+        let mut length = high - low;
+        while length > 1 {
+            let half = length / 2;
+            low += if self.bands[low + half] <= v { half } else { 0 };
+            length -= half;
+        }
+        low
     }
 
     /// Column, and the place in it, of the fraction `u` of the row at `t` between two node rows.
     #[inline(always)]
-    fn sample_turn(
+    fn sample_turn<const L: usize>(
         &self,
         nodes: &Nodes,
-        above: usize,
-        below: usize,
-        t: f64,
-        u: f64,
-    ) -> (usize, f64) {
+        rows: &[[usize; 2]; L],
+        t: DoubleLanes<L>,
+        u: DoubleLanes<L>,
+    ) -> (DoubleLanes<L>, DoubleLanes<L>) {
+        let zero = DoubleLanes([0.0; L]);
+        let mut column = zero;
+        // Of the two rows: the running integrals at both ends of the cell that was found, the values there, and the whole.
+        let mut ends = [[zero; 2]; 2];
+        let mut values = [[zero; 2]; 2];
+        let mut wholes = [zero; 2];
         let w = nodes.width;
+        for lane in 0..L {
+            let low = self.search_turn(w, rows[lane], t.0[lane], u.0[lane]);
+            let next = if low + 1 == w { 0 } else { low + 1 };
+            column.0[lane] = low as f64;
+            for k in 0..2 {
+                let row = rows[lane][k];
+                let running = &self.running[row * (w + 1)..(row + 1) * (w + 1)];
+                let value = &nodes.values[row * w..(row + 1) * w];
+                ends[k][0].0[lane] = f64::from(running[low]);
+                ends[k][1].0[lane] = f64::from(running[low + 1]);
+                values[k][0].0[lane] = f64::from(value[low]);
+                values[k][1].0[lane] = f64::from(value[next]);
+                wholes[k].0[lane] = f64::from(running[w]);
+            }
+        }
+        let x = u * t.lerp(wholes[0], wholes[1]);
+        let start = t.lerp(ends[0][0], ends[1][0]);
+        let end = t.lerp(ends[0][1], ends[1][1]);
+        let left = t.lerp(values[0][0], values[1][0]);
+        let right = t.lerp(values[0][1], values[1][1]);
+        let wide = start.lt(end);
+        let length = DoubleLanes::select(wide, end - start, DoubleLanes::one());
+        let inside = ((x - start) / length).saturate();
+        let inside = DoubleLanes::select(wide, inside, DoubleLanes::lit(0.5));
+        (column, sample_linear(left, right, inside))
+    }
+
+    /// The largest column whose running integral, between two node rows, is at most the fraction `u` of the whole.
+    #[inline(always)]
+    fn search_turn(&self, w: usize, [above, below]: [usize; 2], t: f64, u: f64) -> usize {
         let a = &self.running[above * (w + 1)..(above + 1) * (w + 1)];
         let b = &self.running[below * (w + 1)..(below + 1) * (w + 1)];
         let at = |i: usize| (1.0 - t) * f64::from(a[i]) + t * f64::from(b[i]);
         let x = u * at(w);
-        // Largest i with at(i) ≤ x. It lies between those of the two rows.
+        // It lies between those of the two rows.
         let k = (u * GUIDES as f64) as usize;
         let guides = |row: usize| {
             let at = row * (GUIDES + 1) + k;
@@ -118,24 +210,7 @@ impl Rows {
             low += if at(low + half) <= x { half } else { 0 };
             length -= half;
         }
-        let value = |i: usize| {
-            (1.0 - t) * f64::from(nodes.values[above * w + i])
-                + t * f64::from(nodes.values[below * w + i])
-        };
-        let (start, end) = (at(low), at(low + 1));
-        let next = if low + 1 == w { 0 } else { low + 1 };
-        let (left, right) = (value(low), value(next));
-        let inside = if end > start {
-            ((x - start) / (end - start)).clamp(0.0, 1.0)
-        } else {
-            0.5
-        };
-        let s = if left + right > 0.0 {
-            sample_linear(left, right, inside)
-        } else {
-            0.5
-        };
-        (low, s)
+        low
     }
 }
 
@@ -162,8 +237,8 @@ mod tests {
             for row in 1..h {
                 for (t, u) in (0..997).map(|i| (f64::from(i % 13) / 12.0, f64::from(i) / 997.0)) {
                     let u = u.clamp(U_MIN, U_MAX);
-                    let guided = rows.sample_turn(&nodes, row - 1, row, t, u);
-                    let plain = misled.sample_turn(&nodes, row - 1, row, t, u);
+                    let guided = rows.search_turn(w, [row - 1, row], t, u);
+                    let plain = misled.search_turn(w, [row - 1, row], t, u);
                     assert_eq!(guided, plain, "{w} {row} {t} {u}");
                 }
             }

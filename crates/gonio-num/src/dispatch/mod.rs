@@ -156,6 +156,34 @@ pub fn dispatch_on<K: Kernel>(set: InstructionSet, kernel: K) -> K::Output {
     }
 }
 
+/// As [`dispatch_on`], without the code for the baseline where processors that have nothing better are rare: on x86-64. A kernel of much
+/// code is then compiled twice instead of three times; whoever asks has another way for the baseline.
+///
+/// # Panics
+/// If the machine doesn't have the instruction set, or it is the baseline on x86-64.
+#[inline]
+pub fn dispatch_wide<K: Kernel>(set: InstructionSet, kernel: K) -> K::Output {
+    assert!(
+        set.is_available(),
+        "this machine has no {} instructions",
+        set.name()
+    );
+    match set {
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Baseline => panic!("the baseline of x86-64 was left out"),
+        #[cfg(not(target_arch = "x86_64"))]
+        InstructionSet::Baseline => kernel.run::<8>(),
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx2 => x86::run_avx2(kernel),
+        #[cfg(target_arch = "x86_64")]
+        InstructionSet::Avx512 => x86::run_avx512(kernel),
+        #[cfg(not(target_arch = "x86_64"))]
+        InstructionSet::Avx2 | InstructionSet::Avx512 => {
+            unreachable!("only x86-64 machines have it")
+        }
+    }
+}
+
 /// Runs `work` over `N` lanes in a function of its own, compiled for the widest instruction set of this machine if that has `N`
 /// lanes, else for the baseline.
 #[inline(never)]

@@ -1,8 +1,12 @@
 //! [`Surfaces`], what is known of many surface points, as structures of arrays.
 
-use super::surface::{offset_origin, ray_to};
-use super::{Geometry, Hit, Ray, SurfacePoint};
-use gonio_num::{Vec3, Vectors, vectors::whole_steps};
+use super::placed::{Kind, Placed};
+use super::surface::{axes, normal_part, offset_origin, on_triangle, ray_to};
+use super::{Geometry, Hit, Ray, Shape, SurfacePoint};
+use crate::mesh::TriangleMesh;
+use gonio_num::dispatch::{Kernel, dispatch};
+use gonio_num::lanes::Lanes;
+use gonio_num::{Affine3, DoubleLanes, Real, Vec3, Vectors, vectors::whole_steps};
 
 /// Points of surfaces as [`SurfacePoint`] has them, without texture coordinates and colours.
 #[derive(Debug, Clone, Default)]
@@ -58,7 +62,7 @@ impl Surfaces {
 }
 
 impl Geometry {
-    /// [`Geometry::surface`] of many hits, the same to the bit.
+    /// [`Geometry::surface`] of many hits, the same to the bit. Neighbours on one instance are done together, on lanes.
     ///
     /// - `rays`: origins and directions
     /// - `order`: indices of rays; the point of ray `order[i]` is put at `i`
@@ -74,11 +78,193 @@ impl Geometry {
         surfaces: &mut Surfaces,
     ) {
         surfaces.resize(order.len());
-        for (i, &k) in order.iter().enumerate() {
-            let k = k as usize;
-            let ray = Ray::new(rays[0].get(k), rays[1].get(k));
-            let point = self.surface(&ray, &hits[k]);
-            surfaces.set(i, &point);
+        let mut at = 0;
+        while at < order.len() {
+            let instance = hits[order[at] as usize].instance;
+            let run = order[at..]
+                .iter()
+                .take_while(|&&k| hits[k as usize].instance == instance)
+                .count();
+            let placed = &self.placed[instance as usize];
+            let local = match (placed.kind, self.shape_of(instance)) {
+                (Kind::Mesh(_), Shape::Mesh(mesh)) if mesh.has_own_tangents() => None,
+                (Kind::Mesh(_), Shape::Mesh(mesh)) => Some(Local::Triangles(mesh)),
+                (Kind::Sphere, _) => Some(Local::Sphere),
+                _ => Some(Local::Flat),
+            };
+            match local.filter(|_| run > 1) {
+                Some(local) => dispatch(Run {
+                    placed,
+                    local,
+                    rays,
+                    order: &order[at..at + run],
+                    hits,
+                    surfaces,
+                    at,
+                }),
+                None => {
+                    for (i, &k) in order[at..at + run].iter().enumerate() {
+                        let k = k as usize;
+                        let ray = Ray::new(rays[0].get(k), rays[1].get(k));
+                        surfaces.set(at + i, &self.surface(&ray, &hits[k]));
+                    }
+                }
+            }
+            at += run;
         }
     }
+}
+
+/// Which formula gives a point in the shape's coordinates.
+enum Local<'a> {
+    Sphere,
+    Flat,
+    Triangles(&'a TriangleMesh),
+}
+
+/// Points on one instance.
+struct Run<'a> {
+    placed: &'a Placed,
+    local: Local<'a>,
+    rays: [&'a Vectors; 2],
+    order: &'a [u32],
+    hits: &'a [Hit],
+    surfaces: &'a mut Surfaces,
+    /// Where the points are put.
+    at: usize,
+}
+
+/// A point in the shape's coordinates: itself, and its directions as [`axes`] wants them.
+type Place<const L: usize> = [Vec3<DoubleLanes<L>>; 4];
+
+impl Run<'_> {
+    /// Number `i` of each lane's hit.
+    #[inline(always)]
+    fn numbers<const L: usize>(&self, of: &[u32; L]) -> [Lanes<L>; 3] {
+        let mut numbers = [Lanes([0.0; L]); 3];
+        for lane in 0..L {
+            let hit = &self.hits[of[lane] as usize];
+            numbers[0].0[lane] = hit.t;
+            numbers[1].0[lane] = hit.u;
+            numbers[2].0[lane] = hit.v;
+        }
+        numbers
+    }
+
+    #[inline(always)]
+    fn vectors<const L: usize>(v: &Vectors, of: &[u32; L]) -> Vec3<Lanes<L>> {
+        let [x, y, z] = v.axes();
+        let mut r = Vec3::splat(Lanes([0.0; L]));
+        for lane in 0..L {
+            let k = of[lane] as usize;
+            r.x.0[lane] = x[k];
+            r.y.0[lane] = y[k];
+            r.z.0[lane] = z[k];
+        }
+        r
+    }
+
+    #[inline(always)]
+    fn on_sphere<const L: usize>(&self, of: &[u32; L]) -> Place<L> {
+        let to_object = Affine3::<DoubleLanes<L>>::lit(self.placed.to_object);
+        let o = to_object.transform_point(Self::vectors(self.rays[0], of).to_double());
+        let d = to_object.transform_vector(Self::vectors(self.rays[1], of).to_double());
+        let [t, _, _] = self.numbers(of);
+        let n = (o + d * t.to_double()).normalize();
+        let zero = DoubleLanes::zero();
+        [n, n, Vec3::splat(zero), Vec3::new(-n.y, n.x, zero)]
+    }
+
+    #[inline(always)]
+    fn on_triangles<const L: usize>(&self, mesh: &TriangleMesh, of: &[u32; L]) -> Place<L> {
+        let mut corners = [Vec3::splat(Lanes([0.0; L])); 3];
+        let mut normals = corners;
+        let smooth = !mesh.normals.is_empty();
+        for lane in 0..L {
+            let triangle = mesh.indices[self.hits[of[lane] as usize].primitive as usize];
+            for k in 0..3 {
+                let i = triangle[k] as usize;
+                let p = mesh.positions[i];
+                corners[k].x.0[lane] = p.x;
+                corners[k].y.0[lane] = p.y;
+                corners[k].z.0[lane] = p.z;
+                if smooth {
+                    let n = mesh.normals[i];
+                    normals[k].x.0[lane] = n.x;
+                    normals[k].y.0[lane] = n.y;
+                    normals[k].z.0[lane] = n.z;
+                }
+            }
+        }
+        let [_, u, v] = self.numbers(of);
+        let corners = [
+            corners[0].to_double(),
+            corners[1].to_double(),
+            corners[2].to_double(),
+        ];
+        let (weights, p, ng) = on_triangle(corners, u.to_double(), v.to_double());
+        let mut ns = Vec3::zero();
+        if smooth {
+            let unit = ng.normalize();
+            for k in 0..3 {
+                ns += normal_part(normals[k].to_double(), weights[k], unit);
+            }
+        }
+        [p, ng, ns, Vec3::zero()]
+    }
+}
+
+impl Kernel for Run<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const L: usize>(self) {
+        let to_world = Affine3::<DoubleLanes<L>>::lit(self.placed.to_world);
+        let mut done = 0;
+        while done < self.order.len() {
+            // Past the end the last one is done again.
+            let left = (self.order.len() - done).min(L);
+            let mut of = [self.order[self.order.len() - 1]; L];
+            of[..left].copy_from_slice(&self.order[done..done + left]);
+            let here = self.at + done..self.at + done + left;
+            let [local, ng, ns, tangent] = match self.local {
+                Local::Sphere => self.on_sphere(&of),
+                Local::Triangles(mesh) => self.on_triangles(mesh, &of),
+                Local::Flat => {
+                    let [_, x, y] = self.numbers(&of);
+                    let zero = DoubleLanes::zero();
+                    let p = Vec3::new(x.to_double(), y.to_double(), zero);
+                    [p, Vec3::zero(), Vec3::zero(), Vec3::zero()]
+                }
+            };
+            let p = to_world.transform_point(local);
+            let error = self.placed.error_at(p).to_single() + Lanes::splat(f32::MIN_POSITIVE);
+            error.store(&mut self.surfaces.error[here.clone()]);
+            store(&mut self.surfaces.p, here.clone(), p.to_single());
+            let (ng, ns, tangent) = match &self.placed.flat {
+                Some(flat) => flat.over(),
+                None => {
+                    let world = axes(&to_world, ng, ns, tangent);
+                    (
+                        world.ng.to_single(),
+                        world.ns.to_single(),
+                        world.tangent.to_single(),
+                    )
+                }
+            };
+            store(&mut self.surfaces.ng, here.clone(), ng);
+            store(&mut self.surfaces.ns, here.clone(), ns);
+            store(&mut self.surfaces.tangent, here, tangent);
+            done += L;
+        }
+    }
+}
+
+/// Writes the first lanes of `v`.
+#[inline(always)]
+fn store<const L: usize>(to: &mut Vectors, range: std::ops::Range<usize>, v: Vec3<Lanes<L>>) {
+    let [x, y, z] = to.axes_mut();
+    v.x.store(&mut x[range.clone()]);
+    v.y.store(&mut y[range.clone()]);
+    v.z.store(&mut z[range]);
 }

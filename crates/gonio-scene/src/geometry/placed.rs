@@ -3,7 +3,7 @@
 use super::surface::{Axes, Local};
 use super::{Aabb, Instance, Ray, Shape};
 use crate::SceneError;
-use gonio_num::{Affine3, Vec3};
+use gonio_num::{Affine3, Real, Vec3};
 
 /// Half a unit in the last place, relative: the rounding of single precision, 2⁻²⁴.
 pub(crate) const HALF_ULP: f64 = 1.0 / (1u64 << 24) as f64;
@@ -122,15 +122,17 @@ impl Placed {
 
     /// A bound on the rounding errors around a surface point p in the world: of p itself, of an origin moved off it, and of
     /// that origin in object coordinates. Each is at most √3 half units of the largest coordinate.
+    ///
+    /// 4 half units ≥ √3 for each of the two roundings in the world; the smallest normal number, which a caller adds in single
+    /// precision, keeps it above 0.
     #[inline(always)]
-    pub(crate) fn error_at(&self, p: Vec3<f64>) -> f32 {
+    pub(crate) fn error_at<R: Real>(&self, p: Vec3<R>) -> R {
         let world = p.x.abs().max(p.y.abs()).max(p.z.abs());
         let object = if self.identity {
             0.0
         } else {
             self.object_magnitude
         };
-        // 4 half units ≥ √3 for each of the two roundings in the world; the smallest normal number keeps it above 0.
-        (4.0 * HALF_ULP * (world + object)) as f32 + f32::MIN_POSITIVE
+        R::lit(4.0 * HALF_ULP) * (world + R::lit(object))
     }
 }

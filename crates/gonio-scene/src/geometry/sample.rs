@@ -220,6 +220,28 @@ impl Geometry {
         Some((placed.to_surface(&local, &hit), pdf as f32))
     }
 
+    /// What is known of the surface at a point `p` of a sphere, rectangle or disk.
+    ///
+    /// # Panics
+    /// If there is no such instance, or it is a mesh.
+    pub(crate) fn surface_at(&self, instance: u32, p: Vec3<f64>) -> SurfacePoint {
+        let placed = &self.placed[instance as usize];
+        let own = placed.to_object.transform_point(p);
+        let local = match self.shape_of(instance) {
+            Shape::Sphere => Local::sphere(own),
+            Shape::Rectangle | Shape::Disk => Local::flat(own.x, own.y),
+            Shape::Mesh(_) => panic!("a point alone doesn't tell which triangle it is on"),
+        };
+        let hit = Hit {
+            t: 0.0,
+            instance,
+            primitive: 0,
+            u: 0.0,
+            v: 0.0,
+        };
+        placed.to_surface(&local, &hit)
+    }
+
     /// The density over area \[1/m²\] with which [`Geometry::sample_area`] chooses a surface's point.
     ///
     /// # Panics

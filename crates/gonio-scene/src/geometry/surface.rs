@@ -3,7 +3,8 @@
 use super::placed::{Kind, Placed};
 use super::{Geometry, Hit, Ray, Shape};
 use crate::mesh::TriangleMesh;
-use gonio_num::{Frame, Real, Vec3};
+use gonio_num::lanes::Lanes;
+use gonio_num::{Affine3, Frame, Real, Vec3};
 use std::f64::consts::{PI, TAU};
 
 /// A point of a surface, in world coordinates.
@@ -124,6 +125,18 @@ pub(super) struct Axes {
     bitangent_sign: f32,
 }
 
+impl Axes {
+    /// The geometric and the shading normal and the tangent, in every lane.
+    #[inline(always)]
+    pub(super) fn over<const L: usize>(&self) -> (Vec3<Lanes<L>>, Vec3<Lanes<L>>, Vec3<Lanes<L>>) {
+        (
+            Vec3::broadcast(self.ng),
+            Vec3::broadcast(self.ns),
+            Vec3::broadcast(self.tangent),
+        )
+    }
+}
+
 impl Local {
     fn plain(p: Vec3<f64>, ng: Vec3<f64>, tangent: Vec3<f64>, uv: [f64; 2]) -> Self {
         Self {
@@ -164,11 +177,9 @@ impl Local {
     pub(super) fn triangle(mesh: &TriangleMesh, triangle: usize, u: f32, v: f32) -> Self {
         let corners = mesh.indices[triangle].map(|i| i as usize);
         let (u, v) = (f64::from(u), f64::from(v));
-        let weights = [(1.0 - u - v).max(0.0), u, v];
-        let [a, b, c] = mesh.corners(triangle).map(Vec3::to_f64);
-        let p = a * weights[0] + b * weights[1] + c * weights[2];
-        let (ab, ac) = (b - a, c - a);
-        let mut local = Self::plain(p, ab.cross(ac), Vec3::zero(), [0.0; 2]);
+        let placed = mesh.corners(triangle).map(Vec3::to_f64);
+        let (weights, p, ng) = on_triangle(placed, u, v);
+        let mut local = Self::plain(p, ng, Vec3::zero(), [0.0; 2]);
         let mix = |list: &[[f32; 2]]| {
             if list.is_empty() {
                 [0.0; 2]
@@ -185,10 +196,7 @@ impl Local {
             // A corner without a normal counts with the triangle's own.
             let unit = local.ng.normalize();
             for (&i, &w) in corners.iter().zip(&weights) {
-                let n = mesh.normals[i].to_f64();
-                let length = n.length();
-                let n = if length > 0.0 { n / length } else { unit };
-                local.ns += n * w;
+                local.ns += normal_part(mesh.normals[i].to_f64(), w, unit);
             }
         }
         if !mesh.tangents.is_empty() {
@@ -197,6 +205,7 @@ impl Local {
             local.bitangent_sign = if w < 0.0 { -1.0 } else { 1.0 };
         } else if !mesh.uvs.is_empty() {
             let [uv0, uv1, uv2] = corners.map(|i| mesh.uvs[i].map(f64::from));
+            let (ab, ac) = (placed[1] - placed[0], placed[2] - placed[0]);
             let (du1, dv1) = (uv1[0] - uv0[0], uv1[1] - uv0[1]);
             let (du2, dv2) = (uv2[0] - uv0[0], uv2[1] - uv0[1]);
             // ∂p/∂u · det; the determinant is the signed area of the triangle in the image.
@@ -237,7 +246,7 @@ impl Placed {
         };
         SurfacePoint {
             p: p.to_f32(),
-            error: self.error_at(p),
+            error: self.error_at(p) as f32 + f32::MIN_POSITIVE,
             ng: axes.ng,
             ns: axes.ns,
             tangent: axes.tangent,
@@ -253,34 +262,76 @@ impl Placed {
 
     /// The directions at a shape's point, in the world.
     pub(super) fn axes(&self, local: &Local) -> Axes {
-        let m = &self.to_world;
-        let ng = m.transform_normal(local.ng).normalize();
-        let mut sign = local.bitangent_sign * self.handedness;
-        let mut ns = ng;
-        if local.ns != Vec3::zero() {
-            let bent = m.transform_normal(local.ns);
-            let length = bent.length();
-            // Normals that cancel: the surface's own.
-            if length > 1e-12 * local.ns.length().max(1e-300) && length.is_finite() {
-                ns = bent / length;
-            }
-        }
-        if ns.dot(ng) < 0.0 {
-            ns = -ns;
-            sign = -sign;
-        }
-        let tangent = if local.tangent == Vec3::zero() {
-            Frame::from_normal(ns).s
-        } else {
-            Frame::from_normal_tangent(ns, m.transform_vector(local.tangent)).s
-        };
+        let turned = axes(&self.to_world, local.ng, local.ns, local.tangent);
+        let sign = local.bitangent_sign * self.handedness;
         Axes {
-            ng: ng.to_f32(),
-            ns: ns.to_f32(),
-            tangent: tangent.to_f32(),
-            bitangent_sign: sign,
+            ng: turned.ng.to_f32(),
+            ns: turned.ns.to_f32(),
+            tangent: turned.tangent.to_f32(),
+            bitangent_sign: if turned.flipped { -sign } else { sign },
         }
     }
+}
+
+/// [`Axes`] before they are rounded.
+pub(super) struct WorldAxes<R: Real> {
+    pub(super) ng: Vec3<R>,
+    pub(super) ns: Vec3<R>,
+    pub(super) tangent: Vec3<R>,
+    /// Whether the shading normal pointed to the other side.
+    pub(super) flipped: R::Mask,
+}
+
+/// The directions at a shape's point, in the world.
+///
+/// - `ng`, `ns`, `tangent`: in the shape's coordinates, of any length; `ns` zero: `ng`, `tangent` zero: any
+#[inline(always)]
+pub(super) fn axes<R: Real>(
+    m: &Affine3<R>,
+    ng: Vec3<R>,
+    ns: Vec3<R>,
+    tangent: Vec3<R>,
+) -> WorldAxes<R> {
+    let ng = m.transform_normal(ng).normalize();
+    let bent = m.transform_normal(ns);
+    let length = bent.length();
+    // Normals that cancel: the surface's own.
+    let least = R::lit(1e-12) * ns.length().max(R::lit(1e-300));
+    let sound = length.gt(least) & length.le(R::lit(f64::MAX));
+    let length = R::select(sound, length, R::one());
+    let ns = Vec3::select(sound, bent / length, ng);
+    let flipped = ns.dot(ng).lt(R::zero());
+    let ns = Vec3::select(flipped, -ns, ns);
+    WorldAxes {
+        ng,
+        ns,
+        tangent: Frame::from_normal_tangent(ns, m.transform_vector(tangent)).s,
+        flipped,
+    }
+}
+
+/// The point of a triangle and its normal by winding, of any length.
+///
+/// - `u`, `v`: barycentric weights of the second and third corner
+#[inline(always)]
+pub(super) fn on_triangle<R: Real>(
+    corners: [Vec3<R>; 3],
+    u: R,
+    v: R,
+) -> ([R; 3], Vec3<R>, Vec3<R>) {
+    let weights = [(R::one() - u - v).max(R::zero()), u, v];
+    let [a, b, c] = corners;
+    let p = a * weights[0] + b * weights[1] + c * weights[2];
+    (weights, p, (b - a).cross(c - a))
+}
+
+/// A corner's part in the normal: unit, times its weight; `unit` where the corner has none.
+#[inline(always)]
+pub(super) fn normal_part<R: Real>(n: Vec3<R>, weight: R, unit: Vec3<R>) -> Vec3<R> {
+    let length = n.length();
+    let given = length.gt(R::zero());
+    let n = Vec3::select(given, n / R::select(given, length, R::one()), unit);
+    n * weight
 }
 
 impl Geometry {

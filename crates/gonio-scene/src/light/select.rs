@@ -20,9 +20,9 @@ use std::sync::Arc;
 /// π R² E for parallel light, π R² ∫L dω for an environment.
 #[derive(Debug)]
 pub struct Lights {
-    lights: Vec<Light>,
+    pub(super) lights: Vec<Light>,
     /// One for each light that is a surface.
-    emitters: Vec<Option<Emitter>>,
+    pub(super) emitters: Vec<Option<Emitter>>,
     /// None where there is nothing to choose from.
     choice: Option<Discrete>,
     environment: Option<u32>,
@@ -33,7 +33,7 @@ pub struct Lights {
 #[derive(Debug, Clone, Copy)]
 pub struct LightRef<'a> {
     lights: &'a Lights,
-    index: u32,
+    pub(super) index: u32,
 }
 
 impl Lights {
@@ -226,6 +226,12 @@ impl Lights {
         }
     }
 
+    /// The probability with which the environment is chosen; 0 without one.
+    pub fn environment_probability(&self) -> f32 {
+        self.environment
+            .map_or(0.0, |index| self.probability(index))
+    }
+
     /// The probability with which a light is chosen.
     pub fn probability(&self, light: u32) -> f32 {
         self.choice
@@ -234,7 +240,7 @@ impl Lights {
     }
 
     /// A direction towards a given light; its pdf is without the probability of the choice.
-    fn sample_one(
+    pub(super) fn sample_one(
         &self,
         guide: Guide,
         index: u32,
@@ -259,8 +265,8 @@ impl Lights {
                 let seen = emitter.sample(&self.geometry, (from, error), u_select, u)?;
                 LightSample {
                     wi: seen.wi,
-                    target: LightTarget::Point(seen.point.p),
-                    radiance: emitter.radiance(&seen.point, seen.wi),
+                    target: LightTarget::Point(seen.p),
+                    radiance: seen.radiance,
                     pdf: seen.pdf,
                     delta: false,
                     light: index,

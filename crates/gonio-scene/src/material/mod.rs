@@ -310,6 +310,11 @@ impl Emission {
         self.radiance.iter().any(|&r| r > 0.0)
     }
 
+    /// Whether it is the same all over the surface.
+    pub fn is_even(&self) -> bool {
+        self.texture.is_none() && !self.vertex_colour
+    }
+
     /// The radiance \[W m⁻² sr⁻¹] at a point of a surface.
     pub fn at(&self, point: &SurfacePoint) -> [f32; 3] {
         let mut radiance = self.radiance;

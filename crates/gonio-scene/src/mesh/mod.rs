@@ -62,6 +62,11 @@ impl TriangleMesh {
         (b - a).cross(c - a)
     }
 
+    /// Whether tangents are given, or follow from texture coordinates.
+    pub fn has_own_tangents(&self) -> bool {
+        !self.tangents.is_empty() || !self.uvs.is_empty()
+    }
+
     /// Whether the mesh is closed and its triangles' fronts face what it encloses.
     ///
     /// Taken for closed is a mesh whose area vectors add up to nothing, to 1e-4 of its area: that needs no shared vertices. Then

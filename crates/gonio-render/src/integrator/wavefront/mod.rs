@@ -15,7 +15,9 @@ use super::{
 };
 use crate::film::{FilmSample, FirstSurface};
 use direct::Direct;
-use gonio_env::Guide;
+use gonio_brdf::Model;
+use gonio_env::{EnvSamples, Guide};
+use gonio_num::Vectors;
 use gonio_radiometry::sequence::{SampleStreams, SamplerKind};
 use gonio_scene::{Hit, Ray, Scene};
 use paths::Paths;
@@ -25,36 +27,24 @@ use surface::Vertices;
 /// Samples in a wave: their numbers stay in the second cache.
 pub(crate) const WAVE: usize = 1024;
 
-/// Everything that a wave needs.
-pub(crate) struct Wavefront<'a> {
+/// What the waves of all threads share: how a scene's paths are put in order.
+pub(crate) struct Plan<'a> {
     scene: &'a Scene,
     path: Path,
     guide: Guide,
-    paths: Paths,
-    next: Paths,
-    hits: Vec<Hit>,
-    /// The paths that met a surface and go on, by material.
-    order: Vec<u32>,
-    /// Paths at each material, and which materials have any; all zero between uses.
-    population: Vec<u32>,
-    vertices: Vertices<'a>,
-    direct: Direct,
-    scatter: Scatter,
-    survival: Vec<f32>,
-    /// Light that the first surface emits, or the environment where there is none.
-    emitted: Vec<[f32; 3]>,
-    /// Room for an order to be made in.
-    spare: Vec<u32>,
+    kind: SamplerKind,
+    /// For each material its reflection function, if that is the same all over the surface.
+    models: Vec<Option<&'a Model<f32, 3>>>,
+    /// The bucket of each instance: instances of one material are neighbours.
+    bucket: Vec<u32>,
+    /// The material of each bucket.
+    material: Vec<u32>,
 }
 
-/// Points of one material.
-#[derive(Debug, Clone)]
-struct Group {
-    material: u32,
-    range: std::ops::Range<usize>,
-}
+/// Instances up to which each has a bucket of its own; of more, those of one material share one.
+const MOST_BUCKETS: usize = 1 << 16;
 
-impl<'a> Wavefront<'a> {
+impl<'a> Plan<'a> {
     /// Nothing where paths need what waves don't have: surfaces that are partly transparent, bodies that absorb, and the environment
     /// sampled by the surface that it lights.
     pub fn new(scene: &'a Scene, integrator: &Integrator, kind: SamplerKind) -> Option<Self> {
@@ -69,22 +59,85 @@ impl<'a> Wavefront<'a> {
         if scene.has_transparency() || scene.has_absorption() {
             return None;
         }
+        let instances = scene.geometry.instances();
+        let (bucket, material) = if instances.len() <= MOST_BUCKETS {
+            let mut order: Vec<u32> = (0..instances.len() as u32).collect();
+            order.sort_by_key(|&i| instances[i as usize].material);
+            let mut bucket = vec![0; order.len()];
+            for (place, &i) in order.iter().enumerate() {
+                bucket[i as usize] = place as u32;
+            }
+            let material = order.iter().map(|&i| instances[i as usize].material);
+            (bucket, material.collect())
+        } else {
+            let bucket = instances.iter().map(|i| i.material).collect();
+            (bucket, (0..scene.materials.len() as u32).collect())
+        };
         Some(Self {
             scene,
             path: *path,
             guide,
-            paths: Paths::new(kind),
-            next: Paths::new(kind),
+            kind,
+            models: scene.materials.iter().map(|m| m.even_model()).collect(),
+            bucket,
+            material,
+        })
+    }
+}
+
+/// The waves of one thread.
+pub(crate) struct Wavefront<'a> {
+    plan: &'a Plan<'a>,
+    paths: Paths,
+    next: Paths,
+    hits: Vec<Hit>,
+    /// The paths that met a surface and go on, by material.
+    order: Vec<u32>,
+    /// Paths in each bucket; all zero between uses.
+    population: Vec<u32>,
+    /// Buckets that have any.
+    occupied: Vec<u32>,
+    vertices: Vertices<'a>,
+    direct: Direct,
+    scatter: Scatter,
+    survival: Vec<f32>,
+    /// Light that the first surface emits, or the environment where there is none.
+    emitted: Vec<[f32; 3]>,
+    /// The paths that met nothing, and what they see.
+    missed: Vec<u32>,
+    around: EnvSamples,
+    from: Vectors,
+    /// Room for an order to be made in.
+    spare: Vec<u32>,
+}
+
+/// Points of one material.
+#[derive(Debug, Clone)]
+struct Group {
+    material: u32,
+    range: std::ops::Range<usize>,
+}
+
+impl<'a> Wavefront<'a> {
+    pub fn new(plan: &'a Plan<'a>) -> Self {
+        Self {
+            plan,
+            paths: Paths::new(plan.kind),
+            next: Paths::new(plan.kind),
             hits: Vec::new(),
             order: Vec::new(),
-            population: vec![0; scene.materials.len()],
-            vertices: Vertices::new(scene),
+            population: vec![0; plan.material.len()],
+            occupied: Vec::new(),
+            vertices: Vertices::new(plan),
             direct: Direct::default(),
             scatter: Scatter::default(),
             survival: Vec::new(),
             emitted: Vec::new(),
+            missed: Vec::new(),
+            around: EnvSamples::default(),
+            from: Vectors::default(),
             spare: Vec::new(),
-        })
+        }
     }
 
     /// [`Integrator::radiance`] of many rays, in empty space.
@@ -104,15 +157,15 @@ impl<'a> Wavefront<'a> {
         };
         samples.resize(rays.len(), black);
         self.begin(rays, streams);
-        for segment in 0..=self.path.max_bounces {
+        for segment in 0..=self.plan.path.max_bounces {
             if self.paths.len() == 0 {
                 break;
             }
             self.follow(segment, samples, counts);
-            if segment == self.path.max_bounces && segment > 0 {
+            if segment == self.plan.path.max_bounces && segment > 0 {
                 break;
             }
-            if segment > self.path.roulette_after {
+            if segment > self.plan.path.roulette_after {
                 self.roulette(segment - 1);
             }
             self.sort();
@@ -120,7 +173,7 @@ impl<'a> Wavefront<'a> {
             self.vertices.find(rays, &self.order, &self.hits);
             if segment == 0 {
                 self.note_first_surfaces(samples);
-                if self.path.max_bounces == 0 {
+                if self.plan.path.max_bounces == 0 {
                     break;
                 }
             }
@@ -128,8 +181,8 @@ impl<'a> Wavefront<'a> {
                 .streams
                 .gather(&self.paths.streams, &self.order);
             self.direct
-                .draw(self.scene, self.guide, &self.vertices, segment);
-            self.direct.reflect(self.scene, &self.vertices, counts);
+                .draw(self.plan.scene, self.plan.guide, &self.vertices, segment);
+            self.direct.reflect(self.plan.scene, &self.vertices, counts);
             for (i, contribution) in self.direct.contributions() {
                 let k = self.order[i] as usize;
                 let light = product(self.paths.throughput(k), contribution);
@@ -173,7 +226,7 @@ impl<'a> Wavefront<'a> {
     /// Follows all rays to what they meet, and takes in the light that comes from there. Afterwards `order` has the paths that met a
     /// surface.
     fn follow(&mut self, segment: u32, samples: &mut [FilmSample], counts: &mut RayCounts) {
-        let (scene, paths) = (self.scene, &self.paths);
+        let (scene, paths) = (self.plan.scene, &self.paths);
         counts.nearest += paths.len() as u64;
         self.hits.clear();
         self.order.clear();
@@ -184,52 +237,63 @@ impl<'a> Wavefront<'a> {
             u: 0.0,
             v: 0.0,
         };
+        self.missed.clear();
         for i in 0..paths.len() {
             let ray = paths.ray(i);
-            let hit = scene.geometry.intersect(&ray);
-            self.hits.push(hit.unwrap_or(nothing));
-            let (radiance, density) = match hit {
-                None if segment == 0 => {
-                    let environment = scene.lights.environment();
-                    let seen = environment
-                        .map_or([0.0; 3], |e| e.radiance_from(ray.origin, ray.direction));
-                    (seen, 0.0)
-                }
-                None => scene.lights.environment_radiance_and_pdf_by(
-                    self.guide,
-                    paths.from.get(i),
-                    ray.direction,
-                ),
-                Some(hit) => {
-                    self.order.push(i as u32);
-                    let instance = &scene.geometry.instances()[hit.instance as usize];
-                    if !scene.materials[instance.material as usize]
-                        .emission
-                        .is_lit()
-                    {
-                        continue;
-                    }
-                    let point = scene.geometry.surface(&ray, &hit);
-                    let radiance = scene.emitted(&point, -ray.direction);
-                    if radiance == [0.0; 3] {
-                        continue;
-                    }
-                    let lights = &scene.lights;
-                    (
-                        radiance,
-                        lights.pdf_area(paths.from.get(i), &point, ray.direction),
-                    )
-                }
+            let Some(hit) = scene.geometry.intersect(&ray) else {
+                self.hits.push(nothing);
+                self.missed.push(i as u32);
+                continue;
             };
-            if segment == 0 {
-                self.emitted[i] = radiance;
+            self.hits.push(hit);
+            self.order.push(i as u32);
+            let instance = &scene.geometry.instances()[hit.instance as usize];
+            if !scene.materials[instance.material as usize]
+                .emission
+                .is_lit()
+            {
                 continue;
             }
-            // From ∞ the weight is 1, whatever the other density.
-            let weight = power_heuristic(paths.pdf[i], density);
-            let light = scaled(product(paths.throughput(i), radiance), weight);
-            let sample = &mut samples[paths.id[i] as usize];
-            sample.radiance = sum(sample.radiance, light);
+            let point = scene.geometry.surface(&ray, &hit);
+            let radiance = scene.emitted(&point, -ray.direction);
+            if segment == 0 {
+                self.emitted[i] = radiance;
+            } else if radiance != [0.0; 3] {
+                let lights = &scene.lights;
+                let density = lights.pdf_area(paths.from.get(i), &point, ray.direction);
+                take_in(paths, i, radiance, density, samples);
+            }
+        }
+        self.look_around(segment, samples);
+    }
+
+    /// Takes in the environment's light where a ray met nothing.
+    fn look_around(&mut self, segment: u32, samples: &mut [FilmSample]) {
+        let (lights, paths) = (&self.plan.scene.lights, &self.paths);
+        let (Some(environment), false) = (lights.environment(), self.missed.is_empty()) else {
+            return;
+        };
+        if segment == 0 {
+            for &k in &self.missed {
+                let ray = paths.ray(k as usize);
+                let seen = environment.radiance_from(ray.origin, ray.direction);
+                self.emitted[k as usize] = seen;
+            }
+            return;
+        }
+        let around = &mut self.around;
+        around.wi.resize(self.missed.len());
+        self.from.resize(self.missed.len());
+        for (i, &k) in self.missed.iter().enumerate() {
+            around.wi.set(i, paths.direction.get(k as usize));
+            self.from.set(i, paths.from.get(k as usize));
+        }
+        environment.look_up_many(self.plan.guide, &self.from, around);
+        let probability = lights.environment_probability();
+        for (i, &k) in self.missed.iter().enumerate() {
+            let radiance = [0, 1, 2].map(|c| around.radiance[c][i]);
+            let density = probability * around.pdf[i];
+            take_in(paths, k as usize, radiance, density, samples);
         }
     }
 
@@ -253,42 +317,47 @@ impl<'a> Wavefront<'a> {
         });
     }
 
-    /// Puts `order` in the order of materials, paths of one in their own order, and tells the vertices of the groups.
+    /// Puts `order` in the order of materials and instances, paths at one in their own order, and tells the vertices the groups.
     fn sort(&mut self) {
-        let scene = self.scene;
-        let material_of = |hit: &Hit| scene.geometry.instances()[hit.instance as usize].material;
+        let plan = self.plan;
+        let (hits, population) = (&self.hits, &mut self.population);
+        let bucket_of = |k: u32| plan.bucket[hits[k as usize].instance as usize] as usize;
+        self.occupied.clear();
+        for &k in &self.order {
+            let bucket = bucket_of(k);
+            if population[bucket] == 0 {
+                self.occupied.push(bucket as u32);
+            }
+            population[bucket] += 1;
+        }
+        self.occupied.sort_unstable();
         let groups = &mut self.vertices.groups;
         groups.clear();
-        for &k in &self.order {
-            let material = material_of(&self.hits[k as usize]);
-            let population = &mut self.population[material as usize];
-            if *population == 0 {
-                groups.push(Group {
-                    material,
-                    range: 0..0,
-                });
-            }
-            *population += 1;
-        }
-        groups.sort_unstable_by_key(|g| g.material);
         let mut at = 0;
-        for group in groups.iter_mut() {
-            // From here on the number is where the material's next path goes.
-            let population = &mut self.population[group.material as usize];
+        for &bucket in &self.occupied {
+            let material = plan.material[bucket as usize];
+            // From here on the number is where the bucket's next path goes.
+            let population = &mut population[bucket as usize];
             let end = at + *population as usize;
-            group.range = at..end;
             *population = at as u32;
+            match groups.last_mut() {
+                Some(last) if last.material == material => last.range.end = end,
+                _ => groups.push(Group {
+                    material,
+                    range: at..end,
+                }),
+            }
             at = end;
         }
         std::mem::swap(&mut self.order, &mut self.spare);
         self.order.resize(self.spare.len(), 0);
         for &k in &self.spare {
-            let next = &mut self.population[material_of(&self.hits[k as usize]) as usize];
+            let next = &mut population[bucket_of(k)];
             self.order[*next as usize] = k;
             *next += 1;
         }
-        for group in groups.iter() {
-            self.population[group.material as usize] = 0;
+        for &bucket in &self.occupied {
+            population[bucket as usize] = 0;
         }
     }
 
@@ -305,4 +374,14 @@ impl<'a> Wavefront<'a> {
             }
         }
     }
+}
+
+/// Adds light that path `i` met, with the weight against a light sample of this density.
+#[inline(always)]
+fn take_in(paths: &Paths, i: usize, radiance: [f32; 3], density: f32, samples: &mut [FilmSample]) {
+    // From ∞ the weight is 1, whatever the other density.
+    let weight = power_heuristic(paths.pdf[i], density);
+    let light = scaled(product(paths.throughput(i), radiance), weight);
+    let sample = &mut samples[paths.id[i] as usize];
+    sample.radiance = sum(sample.radiance, light);
 }

@@ -1,19 +1,17 @@
 //! [`Vertices`], the surface points of a wave, ready to reflect.
 
-use super::Group;
+use super::{Group, Plan};
 use crate::integrator::vertex::Vertex;
 use gonio_brdf::{Brdf, Model, batch::Directions};
 use gonio_num::dispatch::{Kernel, dispatch};
 use gonio_num::lanes::Lanes;
 use gonio_num::{Frame, Real, Vec3, Vectors};
 use gonio_radiometry::sequence::{SampleStreams, SamplerKind};
-use gonio_scene::{Hit, Ray, Scene, Surfaces, facing_frame};
+use gonio_scene::{Hit, Ray, Surfaces, facing_frame};
 
 /// Surface points in the order of their materials, with local frames.
 pub(super) struct Vertices<'a> {
-    scene: &'a Scene,
-    /// For each material its reflection function, if that is the same all over the surface.
-    models: Vec<Option<&'a Model<f32, 3>>>,
+    plan: &'a Plan<'a>,
     /// The materials that are met, in their order.
     pub groups: Vec<Group>,
     pub surfaces: Surfaces,
@@ -40,11 +38,9 @@ pub(super) enum Reflects<'v, 'a> {
 }
 
 impl<'a> Vertices<'a> {
-    pub fn new(scene: &'a Scene) -> Self {
-        let models = scene.materials.iter().map(|m| m.even_model()).collect();
+    pub fn new(plan: &'a Plan<'a>) -> Self {
         Self {
-            scene,
-            models,
+            plan,
             groups: Vec::new(),
             surfaces: Surfaces::default(),
             wo_world: Vectors::default(),
@@ -62,7 +58,7 @@ impl<'a> Vertices<'a> {
     ///
     /// - `rays`: origins and directions
     pub fn find(&mut self, rays: [&Vectors; 2], order: &[u32], hits: &[Hit]) {
-        let geometry = &self.scene.geometry;
+        let geometry = &self.plan.scene.geometry;
         geometry.surfaces(rays, order, hits, &mut self.surfaces);
         let count = order.len();
         for v in [
@@ -88,7 +84,7 @@ impl<'a> Vertices<'a> {
         let groups = std::mem::take(&mut self.groups);
         for group in &groups {
             self.starts.push(self.uneven.len());
-            match self.models[group.material as usize] {
+            match self.plan.models[group.material as usize] {
                 Some(model) if model.transmits() => {
                     // Its frame stays on the outer side.
                     for i in group.range.clone() {
@@ -108,8 +104,8 @@ impl<'a> Vertices<'a> {
                         let ray = Ray::new(rays[0].get(k), rays[1].get(k));
                         let point = geometry.surface(&ray, &hits[k]);
                         let wo = -ray.direction;
-                        let shading = self.scene.shade(&point, wo);
-                        let vertex = Vertex::new(self.scene, point, wo, shading);
+                        let shading = self.plan.scene.shade(&point, wo);
+                        let vertex = Vertex::new(self.plan.scene, point, wo, shading);
                         self.s.set(i, vertex.frame.s);
                         self.t.set(i, vertex.frame.t);
                         self.n.set(i, vertex.frame.n);
@@ -136,7 +132,7 @@ impl<'a> Vertices<'a> {
     /// How each group reflects.
     pub fn each_group<'v>(&'v self) -> impl Iterator<Item = (&'v Group, Reflects<'v, 'a>)> {
         self.groups.iter().zip(&self.starts).map(|(group, &start)| {
-            let reflects = match self.models[group.material as usize] {
+            let reflects = match self.plan.models[group.material as usize] {
                 Some(model) => Reflects::Evenly(model),
                 None => Reflects::Unevenly(&self.uneven[start..start + group.range.len()]),
             };
@@ -154,8 +150,8 @@ impl<'a> Vertices<'a> {
 
     pub fn albedo(&self, group: &Group, i: usize) -> [f32; 3] {
         let place = self.groups.partition_point(|g| g.material < group.material);
-        match self.models[group.material as usize] {
-            Some(_) => self.scene.materials[group.material as usize].albedo(),
+        match self.plan.models[group.material as usize] {
+            Some(_) => self.plan.scene.materials[group.material as usize].albedo(),
             None => self.uneven[self.starts[place] + i - group.range.start].albedo,
         }
     }
