@@ -1,9 +1,10 @@
 //! [`take_pass`]: a range of samples of every pixel.
 
 use crate::film::{self, Film, FilmSample, PixelSums, Rejected};
+use crate::integrator::dimension;
 use crate::integrator::wavefront::{Plan, WAVE, Wavefront};
 use crate::{RayCounts, RenderOptions};
-use gonio_num::Vec3;
+use gonio_num::{Vec3, Vectors};
 use gonio_radiometry::sequence::{SampleStream, SampleStreams, SamplerKind};
 use gonio_scene::{Camera, Interior, Ray, Scene};
 use rayon::prelude::*;
@@ -66,8 +67,11 @@ fn take_row(
 struct Row<'a> {
     waves: Wavefront<'a>,
     places: Vec<(u32, u32)>,
-    rays: Vec<Ray>,
     streams: SampleStreams,
+    offset: [Vec<f32>; 2],
+    lens: [Vec<f32>; 2],
+    origins: Vectors,
+    directions: Vectors,
     samples: Vec<FilmSample>,
 }
 
@@ -76,8 +80,11 @@ impl<'a> Row<'a> {
         Self {
             waves: Wavefront::new(plan),
             places: Vec::new(),
-            rays: Vec::new(),
             streams: SampleStreams::new(SamplerKind::default()),
+            offset: [const { Vec::new() }; 2],
+            lens: [const { Vec::new() }; 2],
+            origins: Vectors::default(),
+            directions: Vectors::default(),
             samples: Vec::new(),
         }
     }
@@ -97,23 +104,45 @@ impl<'a> Row<'a> {
         let mut places = places.peekable();
         while places.peek().is_some() {
             self.places.clear();
-            self.rays.clear();
-            self.streams.clear();
-            for (x, k) in places.by_ref().take(WAVE) {
-                let (ray, stream) = camera_ray(camera, options, [x, y], k);
-                self.places.push((x, k));
-                self.rays.push(ray);
-                self.streams.push(&stream);
-            }
-            let samples = &mut self.samples;
+            self.places.extend(places.by_ref().take(WAVE));
+            self.start(camera, options, y);
+            let (samples, rays) = (&mut self.samples, [&self.origins, &self.directions]);
             self.waves
-                .radiance(&self.rays, &self.streams, samples, &mut counts);
+                .radiance(rays, &self.streams, samples, &mut counts);
             for (sample, &(x, k)) in samples.iter().zip(&self.places) {
                 let sums = &mut row[x as usize];
                 film::add(sums, *sample, [x, y], k, &mut rejected);
             }
         }
         (counts, rejected)
+    }
+
+    /// The camera's rays of the wave, as [`camera_ray`] has them one by one.
+    fn start(&mut self, camera: &Camera, options: &RenderOptions, y: u32) {
+        let (width, height) = (options.width, options.height);
+        self.streams.clear();
+        for &(x, k) in &self.places {
+            let stream = SampleStream::new(options.sampler, options.seed, y * width + x, k);
+            self.streams.push(&stream);
+        }
+        for column in self.offset.iter_mut().chain(&mut self.lens) {
+            column.resize(self.places.len(), 0.0);
+        }
+        let [u, v] = &mut self.offset;
+        self.streams.draw(dimension::FILM, [&mut *u, &mut *v]);
+        for (i, &(x, _)) in self.places.iter().enumerate() {
+            let [dx, dy] = options.filter.sample([u[i], v[i]]);
+            u[i] = (x as f32 + dx) / width as f32;
+            v[i] = (y as f32 + dy) / height as f32;
+        }
+        if camera.has_lens() {
+            let [a, b] = &mut self.lens;
+            self.streams.draw(dimension::LENS, [a, b]);
+        }
+        let film = [&self.offset[0][..], &self.offset[1]];
+        let lens = [&self.lens[0][..], &self.lens[1]];
+        let rays = [&mut self.origins, &mut self.directions];
+        camera.rays(film, width as f32 / height as f32, lens, rays);
     }
 }
 

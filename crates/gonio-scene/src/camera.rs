@@ -5,7 +5,9 @@
 //! vertical one, so a wider image shows more at its sides.
 
 use crate::{Aabb, Ray, SceneError};
-use gonio_num::{Affine3, Real, Vec3};
+use gonio_num::dispatch::{Kernel, dispatch};
+use gonio_num::lanes::Lanes;
+use gonio_num::{Affine3, Real, Vec3, Vectors};
 use gonio_radiometry::warp;
 
 /// How a camera projects the scene onto its film.
@@ -196,33 +198,94 @@ impl Camera {
     /// Pinhole: direction ∝ (2u − 1)·a·t x + (1 − 2v)·t y − z with t = tan(fov/2). Thin lens: from a point of the lens
     /// (concentric disk map) to where the pinhole's ray meets the plane of focus.
     pub fn ray(&self, film: [f32; 2], aspect: f32, lens_u: [f32; 2]) -> Ray {
-        let (x, y) = (2.0 * film[0] - 1.0, 1.0 - 2.0 * film[1]);
-        let (origin, direction) = match self.projection {
-            Projection::Pinhole { fov_y_rad } => {
-                let t = Real::tan(0.5 * fov_y_rad);
-                (Vec3::zero(), Vec3::new(x * t * aspect, y * t, -1.0))
-            }
-            Projection::ThinLens {
-                fov_y_rad,
-                lens_radius,
-                focus_distance,
-            } => {
-                let t = Real::tan(0.5 * fov_y_rad);
-                let [a, b] = warp::uniform_disk(lens_u);
-                let lens = Vec3::new(a * lens_radius, b * lens_radius, 0.0);
-                let focus = Vec3::new(x * t * aspect, y * t, -1.0) * focus_distance;
-                (lens, focus - lens)
-            }
-            Projection::Orthographic { half_height } => (
-                Vec3::new(x * half_height * aspect, y * half_height, 0.0),
-                Vec3::new(0.0, 0.0, -1.0),
-            ),
-        };
+        let (origin, direction) = self.axis::<f32>(self.slope(), aspect, film, lens_u);
         Ray {
-            origin: self.to_world.transform_point(origin),
-            direction: self.to_world.transform_vector(direction).normalize(),
+            origin,
+            direction,
             t_max: f32::INFINITY,
         }
+    }
+
+    /// Whether rays start from different points of a lens, so that the numbers that choose one matter.
+    pub fn has_lens(&self) -> bool {
+        matches!(self.projection, Projection::ThinLens { .. })
+    }
+
+    /// [`Camera::ray`] for many points of the film, the same to the bit.
+    ///
+    /// - `film`, `lens_u`: one pair a ray
+    /// - `rays`: origins and directions, written
+    ///
+    /// # Panics
+    /// If there are fewer numbers than points.
+    pub fn rays(
+        &self,
+        film: [&[f32]; 2],
+        aspect: f32,
+        lens_u: [&[f32]; 2],
+        rays: [&mut Vectors; 2],
+    ) {
+        let count = film[0].len();
+        let [origin, direction] = rays;
+        origin.resize(count);
+        direction.resize(count);
+        dispatch(Rays {
+            camera: self,
+            film: film.map(|f| &f[..count]),
+            aspect,
+            lens_u,
+            origin,
+            direction,
+        });
+    }
+
+    /// tan(fov/2); 0 where there is none.
+    fn slope(&self) -> f32 {
+        match self.projection {
+            Projection::Pinhole { fov_y_rad } | Projection::ThinLens { fov_y_rad, .. } => {
+                Real::tan(0.5 * fov_y_rad)
+            }
+            Projection::Orthographic { .. } => 0.0,
+        }
+    }
+
+    /// Origin and direction of a ray.
+    #[inline(always)]
+    fn axis<R: Real>(
+        &self,
+        slope: f32,
+        aspect: f32,
+        film: [R; 2],
+        lens_u: [R; 2],
+    ) -> (Vec3<R>, Vec3<R>) {
+        let of = |x: f32| R::lit(f64::from(x));
+        let (x, y) = (
+            R::lit(2.0) * film[0] - R::one(),
+            R::one() - R::lit(2.0) * film[1],
+        );
+        let (t, aspect) = (of(slope), of(aspect));
+        let towards = Vec3::new(x * t * aspect, y * t, -R::one());
+        let (origin, direction) = match self.projection {
+            Projection::Pinhole { .. } => (Vec3::zero(), towards),
+            Projection::ThinLens {
+                lens_radius,
+                focus_distance,
+                ..
+            } => {
+                let [a, b] = warp::uniform_disk(lens_u);
+                let lens = Vec3::new(a * of(lens_radius), b * of(lens_radius), R::zero());
+                (lens, towards * of(focus_distance) - lens)
+            }
+            Projection::Orthographic { half_height } => (
+                Vec3::new(x * of(half_height) * aspect, y * of(half_height), R::zero()),
+                Vec3::new(R::zero(), R::zero(), -R::one()),
+            ),
+        };
+        let to_world = Affine3::<R>::lit(self.to_world.to_f64());
+        (
+            to_world.transform_point(origin),
+            to_world.transform_vector(direction).normalize(),
+        )
     }
 
     /// Position of the camera (of the lens's centre, of the film's centre if orthographic), in the world.
@@ -358,6 +421,38 @@ fn rigid(m: &Affine3<f32>) -> Option<Affine3<f32>> {
         z: back.to_f32(),
         origin: m.origin,
     })
+}
+
+struct Rays<'a> {
+    camera: &'a Camera,
+    film: [&'a [f32]; 2],
+    aspect: f32,
+    lens_u: [&'a [f32]; 2],
+    origin: &'a mut Vectors,
+    direction: &'a mut Vectors,
+}
+
+impl Kernel for Rays<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const L: usize>(self) {
+        let slope = self.camera.slope();
+        let mut at = 0;
+        while at < self.origin.len() {
+            let film = [
+                Lanes::<L>::load_or(&self.film[0][at..], 0.5),
+                Lanes::<L>::load_or(&self.film[1][at..], 0.5),
+            ];
+            let lens = [
+                Lanes::<L>::load_or(&self.lens_u[0][at..], 0.5),
+                Lanes::<L>::load_or(&self.lens_u[1][at..], 0.5),
+            ];
+            let (origin, direction) = self.camera.axis(slope, self.aspect, film, lens);
+            self.origin.store(at, origin);
+            self.direction.store(at, direction);
+            at += L;
+        }
+    }
 }
 
 #[cfg(test)]

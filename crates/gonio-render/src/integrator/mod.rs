@@ -120,6 +120,10 @@ impl AddAssign for RayCounts {
 
 /// Dimensions of the sample sequence: the film takes 0 and 1, the lens 2 and 3, then each reflection eight.
 pub(crate) mod dimension {
+    /// The place on the film, two numbers.
+    pub const FILM: u32 = 0;
+    /// The place on the lens, two numbers.
+    pub const LENS: u32 = 2;
     /// Where reflection `bounce` begins to draw: light choice, light position (2), direction (3), roulette.
     pub const fn of_bounce(bounce: u32) -> u32 {
         4 + 8 * bounce

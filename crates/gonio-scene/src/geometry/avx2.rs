@@ -55,6 +55,38 @@ pub(super) fn occluded(kernel: Avx2, geometry: &Geometry, ray: &Ray) -> bool {
     unsafe { run(kernel, geometry, ray) }
 }
 
+/// [`Geometry::search_meshes`] with this kernel.
+#[inline]
+pub(super) fn nearest_of_meshes(
+    kernel: Avx2,
+    geometry: &Geometry,
+    ray: &Ray,
+    nearest: Nearest,
+) -> Nearest {
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+    fn run(kernel: Avx2, geometry: &Geometry, ray: &Ray, nearest: Nearest) -> Nearest {
+        geometry.search_meshes::<Avx2, false>(kernel, ray, nearest)
+    }
+    // SAFETY: invariant 1.
+    unsafe { run(kernel, geometry, ray, nearest) }
+}
+
+/// [`Geometry::search_meshes`] for anything at all, with this kernel.
+#[inline]
+pub(super) fn any_of_meshes(
+    kernel: Avx2,
+    geometry: &Geometry,
+    ray: &Ray,
+    nearest: Nearest,
+) -> Nearest {
+    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+    fn run(kernel: Avx2, geometry: &Geometry, ray: &Ray, nearest: Nearest) -> Nearest {
+        geometry.search_meshes::<Avx2, true>(kernel, ray, nearest)
+    }
+    // SAFETY: invariant 1.
+    unsafe { run(kernel, geometry, ray, nearest) }
+}
+
 /// A [`BoxRay`] in registers.
 #[derive(Clone, Copy)]
 pub(crate) struct Boxes {

@@ -16,6 +16,7 @@ mod placed;
 mod query;
 mod sample;
 mod shape;
+mod simple;
 mod stack;
 mod surface;
 #[cfg(test)]
@@ -36,6 +37,7 @@ use mesh_tree::MeshTree;
 use placed::{Kind, Placed};
 use rayon::prelude::*;
 use sample::AreaTable;
+use simple::Simple;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 use tree::{Purpose, WideTree};
@@ -56,6 +58,7 @@ pub struct Geometry {
     bounds: Aabb,
     areas: Vec<OnceLock<AreaTable>>,
     choice: query::Choice,
+    simple: Simple,
 }
 
 impl Geometry {
@@ -129,6 +132,7 @@ impl Geometry {
             },
         );
         let bounds = top.bounds;
+        let simple = Simple::of(&placed);
         let areas = instances.iter().map(|_| OnceLock::new()).collect();
         Ok(Self {
             shapes,
@@ -140,6 +144,7 @@ impl Geometry {
             bounds,
             areas,
             choice: query::Choice::detect(),
+            simple,
         })
     }
 

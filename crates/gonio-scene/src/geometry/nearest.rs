@@ -27,6 +27,19 @@ impl Nearest {
         }
     }
 
+    /// The best one so far is `hit`.
+    #[inline(always)]
+    pub(crate) fn of(hit: &Hit) -> Self {
+        Self {
+            t: hit.t,
+            instance: hit.instance,
+            primitive: hit.primitive,
+            u: hit.u,
+            v: hit.v,
+            found: true,
+        }
+    }
+
     /// Takes a hit if it is nearer, or as near with a lower (instance, primitive). A NaN is never taken.
     #[inline(always)]
     pub(crate) fn offer(&mut self, t: f32, instance: u32, primitive: u32, u: f32, v: f32) -> bool {

@@ -2,8 +2,8 @@
 
 use super::kernel::{Kernel, Portable};
 use super::nearest::Nearest;
-use super::placed::Kind;
-use super::shape::{cross_plane, cross_sphere};
+use super::placed::{Kind, Placed};
+use super::shape::{cross_flat, cross_sphere};
 use super::walk::{BoxRay, Visitor, walk};
 use super::{Geometry, Hit, Ray};
 
@@ -82,12 +82,82 @@ impl Geometry {
     }
 }
 
+impl Geometry {
+    /// What the meshes alone offer that is nearer than `nearest`.
+    #[inline(always)]
+    pub(super) fn search_meshes<K: Kernel, const ANY: bool>(
+        &self,
+        kernel: K,
+        ray: &Ray,
+        nearest: Nearest,
+    ) -> Nearest {
+        if !ray.is_valid() {
+            return nearest;
+        }
+        let boxes = BoxRay::new(ray.origin, ray.direction, &self.top.bounds);
+        let mut visitor = Instances::<K, ANY> {
+            kernel,
+            geometry: self,
+            ray,
+            boxes: &boxes,
+            nearest,
+        };
+        for &(instance, tree) in &self.simple.meshes {
+            let found = visitor.mesh(tree, &self.placed[instance as usize], instance);
+            if ANY && found {
+                break;
+            }
+        }
+        visitor.nearest
+    }
+
+    #[inline]
+    pub(super) fn nearest_of_meshes(&self, ray: &Ray, nearest: Nearest) -> Nearest {
+        match self.choice {
+            Choice::Portable => self.search_meshes::<Portable, false>(Portable, ray, nearest),
+            #[cfg(target_arch = "x86_64")]
+            Choice::Avx2(kernel) => super::avx2::nearest_of_meshes(kernel, self, ray, nearest),
+        }
+    }
+
+    #[inline]
+    pub(super) fn occluded_by_meshes(&self, ray: &Ray) -> bool {
+        let nothing = Nearest::none(ray.t_max);
+        let found = match self.choice {
+            Choice::Portable => self.search_meshes::<Portable, true>(Portable, ray, nothing),
+            #[cfg(target_arch = "x86_64")]
+            Choice::Avx2(kernel) => super::avx2::any_of_meshes(kernel, self, ray, nothing),
+        };
+        found.hit().is_some()
+    }
+}
+
 struct Instances<'a, K: Kernel, const ANY: bool> {
     kernel: K,
     geometry: &'a Geometry,
     ray: &'a Ray,
     boxes: &'a BoxRay,
     nearest: Nearest,
+}
+
+impl<K: Kernel, const ANY: bool> Instances<'_, K, ANY> {
+    /// Whether a mesh offers anything nearer.
+    #[inline(always)]
+    fn mesh(&mut self, tree: u32, placed: &Placed, instance: u32) -> bool {
+        let tree = &self.geometry.trees[tree as usize];
+        let nearest = &mut self.nearest;
+        if placed.identity {
+            let (kernel, boxes) = (self.kernel, self.boxes);
+            return kernel.search_mesh::<ANY>(tree, self.ray, boxes, instance, nearest);
+        }
+        let ray = placed.ray_to_mesh(self.ray);
+        let boxes = BoxRay::new(ray.origin, ray.direction, &tree.tree.bounds);
+        // Overflow or underflow on the way there: nothing can be seen.
+        ray.is_valid()
+            && self
+                .kernel
+                .search_mesh::<ANY>(tree, &ray, &boxes, instance, nearest)
+    }
 }
 
 impl<K: Kernel, const ANY: bool> Visitor for Instances<'_, K, ANY> {
@@ -104,43 +174,17 @@ impl<K: Kernel, const ANY: bool> Visitor for Instances<'_, K, ANY> {
             let instance = self.geometry.order[k as usize];
             let placed = &self.geometry.placed[instance as usize];
             let found = match placed.kind {
-                Kind::Mesh(tree) => {
-                    let tree = &self.geometry.trees[tree as usize];
-                    let nearest = &mut self.nearest;
-                    if placed.identity {
-                        let (kernel, boxes) = (self.kernel, self.boxes);
-                        kernel.search_mesh::<ANY>(tree, self.ray, boxes, instance, nearest)
-                    } else {
-                        let ray = placed.ray_to_mesh(self.ray);
-                        let boxes = BoxRay::new(ray.origin, ray.direction, &tree.tree.bounds);
-                        // Overflow or underflow on the way there: nothing can be seen.
-                        ray.is_valid()
-                            && self
-                                .kernel
-                                .search_mesh::<ANY>(tree, &ray, &boxes, instance, nearest)
-                    }
-                }
+                Kind::Mesh(tree) => self.mesh(tree, placed, instance),
                 Kind::Sphere => {
                     let (o, d) = placed.ray_to_object(self.ray);
-                    // The end is given a little more, so that a tie is still offered.
-                    match cross_sphere(o, d, f32::INFINITY) {
-                        Some(t) => self.nearest.offer(t, instance, 0, 0.0, 0.0),
-                        None => false,
-                    }
+                    let met = cross_sphere(o, d);
+                    met.found && self.nearest.offer(met.t as f32, instance, 0, 0.0, 0.0)
                 }
                 Kind::Rectangle | Kind::Disk => {
                     let (o, d) = placed.ray_to_object(self.ray);
-                    match cross_plane(o, d) {
-                        Some((t, x, y)) => {
-                            let inside = if placed.kind == Kind::Disk {
-                                x * x + y * y <= 1.0
-                            } else {
-                                x.abs() <= 1.0 && y.abs() <= 1.0
-                            };
-                            inside && self.nearest.offer(t, instance, 0, x as f32, y as f32)
-                        }
-                        None => false,
-                    }
+                    let met = cross_flat(placed.kind == Kind::Disk, o, d);
+                    let (x, y) = (met.x as f32, met.y as f32);
+                    met.found && self.nearest.offer(met.t as f32, instance, 0, x, y)
                 }
             };
             if ANY && found {

@@ -1,6 +1,7 @@
 //! [`Shape`] and [`Instance`], and where a ray meets the shapes that aren't meshes.
 
 use super::Aabb;
+use crate::double::Double;
 use crate::mesh::TriangleMesh;
 use gonio_num::{Affine3, Vec3};
 use std::sync::Arc;
@@ -40,36 +41,78 @@ pub struct Instance {
 /// t² d·d + 2 t o·d + o·o − 1 = 0, with the discriminant from the part of o across d, and the smaller root by
 /// multiplication: nothing cancels (Haines et al. 2019, Ray Tracing Gems, chapter 7).
 #[inline(always)]
-pub(crate) fn cross_sphere(o: Vec3<f64>, d: Vec3<f64>, t_max: f32) -> Option<f32> {
+pub(crate) fn cross_sphere<D: Double>(o: Vec3<D>, d: Vec3<D>) -> Met<D> {
     let a = d.dot(d);
     let b = -o.dot(d);
-    let c = o.dot(o) - 1.0;
+    let c = o.dot(o) - D::one();
     let across = o + d * (b / a);
-    let discriminant = 1.0 - across.dot(across);
-    if discriminant < 0.0 {
-        return None;
-    }
-    let root = (a * discriminant).sqrt();
-    let q = if b < 0.0 { b - root } else { b + root };
+    let discriminant = D::one() - across.dot(across);
+    let root = (a * discriminant).safe_sqrt();
+    let q = D::select(b.lt(D::zero()), b - root, b + root);
     let (r0, r1) = (c / q, q / a);
-    let (first, second) = if r0 < r1 { (r0, r1) } else { (r1, r0) };
+    let swapped = r0.lt(r1);
+    let first = D::select(swapped, r0, r1);
+    let second = rounded(D::select(swapped, r1, r0));
+    let behind = first.le(D::zero());
+    let first = rounded(first);
     // Each is false for NaN, which a ray along a tangent that starts at its point leads to.
-    let inside = |t: f64| t as f32 > 0.0 && (t as f32) < t_max;
-    if inside(first) {
-        Some(first as f32)
-    } else if first <= 0.0 && inside(second) {
-        Some(second as f32)
-    } else {
-        None
+    let (near, far) = (ahead(first), ahead(second) & behind);
+    Met {
+        t: D::select(near, first, second),
+        x: D::zero(),
+        y: D::zero(),
+        found: (near | far) & !discriminant.lt(D::zero()),
     }
 }
 
-/// Where a ray meets the plane z = 0: (t, x, y), t > 0.
+/// A point where a ray may meet a shape.
+pub(crate) struct Met<D: Double> {
+    /// Rounded to single precision, which rays count in.
+    pub(crate) t: D,
+    /// The place on a flat shape.
+    pub(crate) x: D,
+    pub(crate) y: D,
+    /// Whether there is one, t > 0.
+    pub(crate) found: D::Mask,
+}
+
+/// Rounded to single precision.
 #[inline(always)]
-pub(crate) fn cross_plane(o: Vec3<f64>, d: Vec3<f64>) -> Option<(f32, f64, f64)> {
+fn rounded<D: Double>(t: D) -> D {
+    D::of(t.single())
+}
+
+/// Whether t lies in (0, ∞).
+#[inline(always)]
+fn ahead<D: Double>(t: D) -> D::Mask {
+    D::zero().lt(t) & t.le(D::lit(f64::from(f32::MAX)))
+}
+
+/// Where a ray meets the plane z = 0, t > 0.
+#[inline(always)]
+pub(crate) fn cross_plane<D: Double>(o: Vec3<D>, d: Vec3<D>) -> Met<D> {
     let t = -o.z / d.z;
-    let near = t as f32;
-    (near > 0.0 && near < f32::INFINITY).then_some((near, o.x + t * d.x, o.y + t * d.y))
+    let met = rounded(t);
+    Met {
+        t: met,
+        x: o.x + t * d.x,
+        y: o.y + t * d.y,
+        found: ahead(met),
+    }
+}
+
+/// Where a ray meets the square \[−1, 1\]² or the unit disk of that plane.
+#[inline(always)]
+pub(crate) fn cross_flat<D: Double>(disk: bool, o: Vec3<D>, d: Vec3<D>) -> Met<D> {
+    let mut met = cross_plane(o, d);
+    let (x, y, one) = (met.x, met.y, D::one());
+    let inside = if disk {
+        (x * x + y * y).le(one)
+    } else {
+        x.abs().le(one) & y.abs().le(one)
+    };
+    met.found = met.found & inside;
+    met
 }
 
 impl Shape {
@@ -109,29 +152,32 @@ impl Shape {
 mod tests {
     use super::*;
 
+    fn sphere(o: Vec3<f64>, d: Vec3<f64>) -> Option<f32> {
+        let met = cross_sphere(o, d);
+        met.found.then_some(met.t as f32)
+    }
+
     #[test]
     fn a_far_sphere_is_met_to_the_last_bit() {
         // From 1e6 radii away the distance is 1e6 − 1, which single precision holds exactly.
-        let t = cross_sphere(Vec3::new(0.0, 0.0, 1e6), Vec3::new(0.0, 0.0, -1.0), 1e30);
+        let t = sphere(Vec3::new(0.0, 0.0, 1e6), Vec3::new(0.0, 0.0, -1.0));
         assert_eq!(t, Some(999_999.0));
         let past = Vec3::new(1.0 + 1e-9, 0.0, 1e6);
-        assert_eq!(cross_sphere(past, Vec3::new(0.0, 0.0, -1.0), 1e30), None);
+        assert_eq!(sphere(past, Vec3::new(0.0, 0.0, -1.0)), None);
         let graze = Vec3::new(1.0 - 1e-9, 0.0, 1e6);
-        assert!(cross_sphere(graze, Vec3::new(0.0, 0.0, -1.0), 1e30).is_some());
+        assert!(sphere(graze, Vec3::new(0.0, 0.0, -1.0)).is_some());
     }
 
     #[test]
     fn from_inside_the_far_side_is_met() {
-        let t = cross_sphere(Vec3::new(0.5, 0.0, 0.0), Vec3::new(2.0, 0.0, 0.0), 1e30);
+        let t = sphere(Vec3::new(0.5, 0.0, 0.0), Vec3::new(2.0, 0.0, 0.0));
         assert_eq!(t, Some(0.25));
-        let beyond = cross_sphere(Vec3::new(0.5, 0.0, 0.0), Vec3::new(2.0, 0.0, 0.0), 0.25);
-        assert_eq!(beyond, None);
     }
 
     #[test]
     fn a_plane_parallel_to_the_ray_is_missed() {
         let d = Vec3::new(1.0, 0.0, 0.0);
-        assert!(cross_plane(Vec3::new(0.0, 0.0, 1.0), d).is_none());
-        assert!(cross_plane(Vec3::new(0.0, 0.0, 0.0), d).is_none());
+        assert!(!cross_plane(Vec3::new(0.0, 0.0, 1.0), d).found);
+        assert!(!cross_plane(Vec3::new(0.0, 0.0, 0.0), d).found);
     }
 }

@@ -17,8 +17,13 @@ pub(super) struct Direct {
     wi: Vectors,
     f: [Vec<f32>; 3],
     pdf: Vec<f32>,
-    /// What is reflected, of the points that any is.
+    /// What is reflected, of the points that any is, if nothing stands in between.
     reflected: Vec<(u32, [f32; 3])>,
+    /// The rays that tell, one for each.
+    origins: Vectors,
+    directions: Vectors,
+    ends: Vec<f32>,
+    hidden: Vec<bool>,
 }
 
 impl Direct {
@@ -75,6 +80,9 @@ impl Direct {
             }
         }
         self.reflected.clear();
+        self.ends.clear();
+        self.origins.resize(count);
+        self.directions.resize(count);
         for i in 0..count {
             let sampled = light.pdf[i];
             let f = [0, 1, 2].map(|k| self.f[k][i]);
@@ -97,20 +105,27 @@ impl Direct {
             if reflected == [0.0; 3] {
                 continue;
             }
-            counts.shadow += 1;
             let ray = if light.infinite[i] {
                 vertices.surfaces.spawn_ray(i, light.wi.get(i))
             } else {
                 vertices.surfaces.spawn_ray_to(i, light.target.get(i))
             };
-            if !scene.occluded(&ray) {
-                self.reflected.push((i as u32, reflected));
-            }
+            self.origins.set(self.ends.len(), ray.origin);
+            self.directions.set(self.ends.len(), ray.direction);
+            self.ends.push(ray.t_max);
+            self.reflected.push((i as u32, reflected));
         }
+        counts.shadow += self.ends.len() as u64;
+        self.origins.resize(self.ends.len());
+        self.directions.resize(self.ends.len());
+        let rays = [&self.origins, &self.directions];
+        (scene.geometry).occluded_many(rays, &self.ends, &mut self.hidden);
     }
 
     /// The points that reflect anything, and what.
     pub fn contributions(&self) -> impl Iterator<Item = (usize, [f32; 3])> + '_ {
-        self.reflected.iter().map(|&(i, light)| (i as usize, light))
+        let seen = |&(_, hidden): &(_, &bool)| !*hidden;
+        let all = self.reflected.iter().zip(&self.hidden);
+        all.filter(seen).map(|(&(i, light), _)| (i as usize, light))
     }
 }

@@ -19,7 +19,7 @@ use gonio_brdf::Model;
 use gonio_env::{EnvSamples, Guide};
 use gonio_num::Vectors;
 use gonio_radiometry::sequence::{SampleStreams, SamplerKind};
-use gonio_scene::{Hit, Ray, Scene};
+use gonio_scene::{Hit, Scene};
 use paths::Paths;
 use scatter::Scatter;
 use surface::Vertices;
@@ -39,6 +39,8 @@ pub(crate) struct Plan<'a> {
     bucket: Vec<u32>,
     /// The material of each bucket.
     material: Vec<u32>,
+    /// Whether each instance emits light.
+    shines: Vec<bool>,
 }
 
 /// Instances up to which each has a bucket of its own; of more, those of one material share one.
@@ -81,6 +83,9 @@ impl<'a> Plan<'a> {
             models: scene.materials.iter().map(|m| m.even_model()).collect(),
             bucket,
             material,
+            shines: (instances.iter())
+                .map(|i| scene.materials[i.material as usize].emission.is_lit())
+                .collect(),
         })
     }
 }
@@ -142,10 +147,11 @@ impl<'a> Wavefront<'a> {
 
     /// [`Integrator::radiance`] of many rays, in empty space.
     ///
+    /// - `rays`: origins and directions
     /// - `samples`: one a ray, written
     pub fn radiance(
         &mut self,
-        rays: &[Ray],
+        rays: [&Vectors; 2],
         streams: &SampleStreams,
         samples: &mut Vec<FilmSample>,
         counts: &mut RayCounts,
@@ -155,7 +161,7 @@ impl<'a> Wavefront<'a> {
             radiance: [0.0; 3],
             first: None,
         };
-        samples.resize(rays.len(), black);
+        samples.resize(streams.len(), black);
         self.begin(rays, streams);
         for segment in 0..=self.plan.path.max_bounces {
             if self.paths.len() == 0 {
@@ -205,21 +211,20 @@ impl<'a> Wavefront<'a> {
         }
     }
 
-    fn begin(&mut self, rays: &[Ray], streams: &SampleStreams) {
+    fn begin(&mut self, rays: [&Vectors; 2], streams: &SampleStreams) {
+        let count = streams.len();
         self.emitted.clear();
-        self.emitted.resize(rays.len(), [0.0; 3]);
+        self.emitted.resize(count, [0.0; 3]);
         let paths = &mut self.paths;
-        paths.begin(rays.len());
-        for (i, ray) in rays.iter().enumerate() {
-            paths.id.push(i as u32);
-            paths.streams.push_from(streams, i);
-            paths.origin.set(i, ray.origin);
-            paths.direction.set(i, ray.direction);
-            for column in &mut paths.throughput {
-                column.push(1.0);
-            }
-            paths.pdf.push(f32::INFINITY);
+        paths.begin(count);
+        paths.id.extend(0..count as u32);
+        paths.streams.clone_from(streams);
+        paths.origin.clone_from(rays[0]);
+        paths.direction.clone_from(rays[1]);
+        for column in &mut paths.throughput {
+            column.resize(count, 1.0);
         }
+        paths.pdf.resize(count, f32::INFINITY);
         paths.end();
     }
 
@@ -228,33 +233,21 @@ impl<'a> Wavefront<'a> {
     fn follow(&mut self, segment: u32, samples: &mut [FilmSample], counts: &mut RayCounts) {
         let (scene, paths) = (self.plan.scene, &self.paths);
         counts.nearest += paths.len() as u64;
-        self.hits.clear();
         self.order.clear();
-        let nothing = Hit {
-            t: f32::INFINITY,
-            instance: 0,
-            primitive: 0,
-            u: 0.0,
-            v: 0.0,
-        };
         self.missed.clear();
-        for i in 0..paths.len() {
-            let ray = paths.ray(i);
-            let Some(hit) = scene.geometry.intersect(&ray) else {
-                self.hits.push(nothing);
+        let rays = [&paths.origin, &paths.direction];
+        scene.geometry.intersect_many(rays, &mut self.hits);
+        for (i, hit) in self.hits.iter().enumerate() {
+            if hit.t == f32::INFINITY {
                 self.missed.push(i as u32);
                 continue;
-            };
-            self.hits.push(hit);
+            }
             self.order.push(i as u32);
-            let instance = &scene.geometry.instances()[hit.instance as usize];
-            if !scene.materials[instance.material as usize]
-                .emission
-                .is_lit()
-            {
+            if !self.plan.shines[hit.instance as usize] {
                 continue;
             }
-            let point = scene.geometry.surface(&ray, &hit);
+            let ray = paths.ray(i);
+            let point = scene.geometry.surface(&ray, hit);
             let radiance = scene.emitted(&point, -ray.direction);
             if segment == 0 {
                 self.emitted[i] = radiance;
