@@ -2,7 +2,7 @@
 
 use crate::ImageError;
 use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::io::{self, Cursor, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,30 +14,96 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// # Errors
 /// [`ImageError::Io`] with what could not be done.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
-    let special = std::fs::metadata(path).is_ok_and(|m| !m.is_file());
-    if special {
-        return OpenOptions::new()
-            .write(true)
-            .open(path)
-            .and_then(|mut f| f.write_all(bytes).and_then(|()| f.flush()))
-            .map_err(|e| ImageError::io(path, "write it", e));
+    let mut pending = Pending::create(path)?;
+    pending
+        .write_all(bytes)
+        .map_err(|e| ImageError::io(path, "write it", e))?;
+    pending.put_in_place()
+}
+
+/// A file that is not in place yet: dropped, it is gone.
+pub(crate) struct Pending {
+    path: PathBuf,
+    target: Target,
+}
+
+enum Target {
+    Beside(File, Temporary),
+    /// For a pipe or a device, which can't be gone back in.
+    Memory(Cursor<Vec<u8>>),
+}
+
+impl Pending {
+    pub fn create(path: &Path) -> Result<Self, ImageError> {
+        let special = std::fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir());
+        let target = if special {
+            Target::Memory(Cursor::default())
+        } else {
+            let temporary = Temporary::beside(path)?;
+            let file = File::options()
+                .read(true)
+                .write(true)
+                .create_new(true)
+                .open(&temporary.path)
+                .map_err(|e| ImageError::io(path, "create a file in its folder", e))?;
+            Target::Beside(file, temporary)
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            target,
+        })
     }
-    let mut temporary = Temporary::beside(path)?;
-    let done = File::options()
-        .write(true)
-        .create_new(true)
-        .open(&temporary.path)
-        .map_err(|e| ImageError::io(path, "create a file in its folder", e))
-        .and_then(|mut file| {
-            file.write_all(bytes)
-                .and_then(|()| file.sync_all())
-                .map_err(|e| ImageError::io(path, "write it", e))
-        });
-    done?;
-    std::fs::rename(&temporary.path, path)
-        .map_err(|e| ImageError::io(path, "put it in place", e))?;
-    temporary.in_place = true;
-    Ok(())
+
+    /// Flushes it to the disk and gives it its name.
+    pub fn put_in_place(self) -> Result<(), ImageError> {
+        let path = &self.path;
+        match self.target {
+            Target::Beside(file, mut temporary) => {
+                file.sync_all()
+                    .map_err(|e| ImageError::io(path, "write it", e))?;
+                std::fs::rename(&temporary.path, path)
+                    .map_err(|e| ImageError::io(path, "put it in place", e))?;
+                temporary.in_place = true;
+                Ok(())
+            }
+            Target::Memory(bytes) => OpenOptions::new()
+                .write(true)
+                .open(path)
+                .and_then(|mut f| f.write_all(bytes.get_ref()).and_then(|()| f.flush()))
+                .map_err(|e| ImageError::io(path, "write it", e)),
+        }
+    }
+}
+
+impl Read for Pending {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        match &mut self.target {
+            Target::Beside(file, _) => file.read(bytes),
+            Target::Memory(all) => all.read(bytes),
+        }
+    }
+}
+
+impl Write for Pending {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.target {
+            Target::Beside(file, _) => file.write(bytes),
+            Target::Memory(all) => all.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for Pending {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        match &mut self.target {
+            Target::Beside(file, _) => file.seek(to),
+            Target::Memory(all) => all.seek(to),
+        }
+    }
 }
 
 /// A file that is removed when dropped, unless it was put in place.

@@ -1,8 +1,9 @@
 //! [`Image`]: a rectangle of linear RGB.
 
 use crate::format::{self, FileFormat};
+use crate::rows::{Store, write_rows};
 use crate::tonemap::{self, ToneMap};
-use crate::{ImageError, Layers, Limits, RawImage, TexelFormat, atomic};
+use crate::{ImageError, Limits, RawImage, TexelFormat, atomic};
 use std::path::Path;
 
 /// A rectangle of linear RGB with Rec. 709 (sRGB) primaries, in whatever unit its maker says, usually radiance
@@ -99,8 +100,7 @@ impl Image {
     /// # Errors
     /// As [`Image::read`].
     pub fn read_within(path: &Path, limits: &Limits) -> Result<Self, ImageError> {
-        let bytes = limits.read_file(path)?;
-        format::decode_image(&path.display().to_string(), &bytes, limits)
+        format::read_image(&path.display().to_string(), limits.open(path)?, limits)
     }
 
     /// [`Image::read`] of bytes in memory.
@@ -120,13 +120,8 @@ impl Image {
     /// values ≥ 0); `Io` with nothing half-written.
     pub fn write(&self, path: &Path) -> Result<(), ImageError> {
         match FileFormat::of_extension(path)? {
-            FileFormat::Exr => Layers::from_image(self).write_exr(path),
-            FileFormat::Hdr => {
-                self.check_shape(path)?;
-                let bytes = format::radiance::encode(self)
-                    .map_err(|e| ImageError::parameter(format!("{}: {e}", path.display())))?;
-                atomic::write(path, &bytes)
-            }
+            FileFormat::Exr => self.write_by_rows(path, Store::ExrFloat),
+            FileFormat::Hdr => self.write_by_rows(path, Store::Hdr),
             FileFormat::Png => self.write_png(path, ToneMap::Linear, 0.0),
             kind @ (FileFormat::Ktx2 | FileFormat::Dds) => {
                 self.write_as_texture(path, kind, TexelFormat::Half)
@@ -172,10 +167,14 @@ impl Image {
         tonemap: ToneMap,
         exposure_ev: f32,
     ) -> Result<(), ImageError> {
-        self.check_shape(path)?;
-        let codes = self.to_srgb8(tonemap, exposure_ev);
-        let bytes = format::raster::encode_png8(path, self.width, self.height, &codes)?;
-        atomic::write(path, &bytes)
+        self.write_by_rows(
+            path,
+            Store::Png {
+                tonemap,
+                exposure_ev,
+                deep: false,
+            },
+        )
     }
 
     /// Writes a 16-bit PNG: as [`Image::write_png`], with 65,536 steps.
@@ -188,16 +187,28 @@ impl Image {
         tonemap: ToneMap,
         exposure_ev: f32,
     ) -> Result<(), ImageError> {
+        self.write_by_rows(
+            path,
+            Store::Png {
+                tonemap,
+                exposure_ev,
+                deep: true,
+            },
+        )
+    }
+
+    fn write_by_rows(&self, path: &Path, store: Store) -> Result<(), ImageError> {
         self.check_shape(path)?;
-        let scale = tonemap::exposure_scale(exposure_ev);
-        let codes: Vec<u16> = self
-            .pixels
-            .iter()
-            .flat_map(|p| tonemap.apply(p.map(|c| c * scale)))
-            .map(crate::srgb::encode16)
-            .collect();
-        let bytes = format::raster::encode_png16(path, self.width, self.height, &codes)?;
-        atomic::write(path, &bytes)
+        write_rows(
+            path,
+            [self.width, self.height],
+            store,
+            &mut |first, rows| {
+                let start = first * self.width;
+                rows.copy_from_slice(&self.pixels[start..start + rows.len()]);
+                Ok(())
+            },
+        )
     }
 
     /// 8-bit sRGB codes, three a pixel: the image times 2^`exposure_ev`, tone mapped, with the sRGB transfer.

@@ -2,6 +2,7 @@
 
 use crate::format::{self, openexr};
 use crate::{Image, ImageError, Limits, atomic, f16};
+use std::io::Cursor;
 use std::path::Path;
 
 /// The samples of one channel, in the precision of the file. Row after row from the top left.
@@ -186,44 +187,27 @@ impl Layers {
     /// The picture one would show: R, G and B of the default layer, else its Y as grey, else the same of the first layer
     /// that has them, else an only channel as grey. Brought to Rec. 709 if [`Layers::chromaticities`] are others.
     pub fn to_image(&self) -> Option<Image> {
-        let layer = self.shown_layer()?;
-        if let Some(mut image) = self.rgb(layer) {
-            if let Some(matrix) = self.chromaticities.as_ref().and_then(format::to_rec709) {
-                for pixel in &mut image.pixels {
-                    *pixel = format::apply_matrix(&matrix, *pixel);
-                }
+        let ([r, g, b], grey) = shown(&self.names())?;
+        let [r, g, b] = [r, g, b].map(|i| &self.channels[i].samples);
+        let mut image = self.compose(|i| [r.get(i), g.get(i), b.get(i)]);
+        if let (false, Some(colours)) = (grey, &self.chromaticities)
+            && let Some(matrix) = format::to_rec709(colours)
+        {
+            for pixel in &mut image.pixels {
+                *pixel = format::apply_matrix(&matrix, *pixel);
             }
-            return Some(image);
         }
-        let grey = match self.channel(&qualified(layer, "Y")) {
-            Some(y) => y,
-            None => self.channels.first()?,
-        };
-        Some(self.compose(|i| [grey.samples.get(i); 3]))
+        Some(image)
     }
 
     /// The samples of the alpha channel beside what [`Layers::to_image`] shows.
     pub(crate) fn alpha(&self) -> Option<&Channel> {
-        self.channel(&qualified(self.shown_layer()?, "A"))
+        let names = self.names();
+        self.channel(&qualified(shown_layer(&names)?, "A"))
     }
 
-    /// The name of the layer that [`Layers::to_image`] shows.
-    fn shown_layer(&self) -> Option<&str> {
-        let complete = |layer: &str| {
-            let has = |c| self.channel(&qualified(layer, c)).is_some();
-            (has("R") && has("G") && has("B")) || has("Y")
-        };
-        let names = std::iter::once("").chain(
-            self.channels
-                .iter()
-                .map(|c| c.name.rsplit_once('.').map_or("", |(layer, _)| layer)),
-        );
-        for layer in names {
-            if complete(layer) {
-                return Some(layer);
-            }
-        }
-        (self.channels.len() == 1).then_some("")
+    fn names(&self) -> Vec<&str> {
+        self.channels.iter().map(|c| c.name.as_str()).collect()
     }
 
     fn compose(&self, pixel: impl Fn(usize) -> [f32; 3]) -> Image {
@@ -271,8 +255,7 @@ impl Layers {
     /// `Unsupported` for deep data, subsampled channels and parts of different sizes; `Format`, `Limit`, `Io`.
     pub fn read_exr(path: &Path) -> Result<Self, ImageError> {
         let limits = Limits::default();
-        let bytes = limits.read_file(path)?;
-        openexr::decode(&path.display().to_string(), &bytes, &limits)
+        openexr::decode(&path.display().to_string(), limits.open(path)?, &limits)
     }
 
     /// [`Layers::read_exr`] of bytes in memory.
@@ -281,7 +264,7 @@ impl Layers {
     /// As [`Layers::read_exr`], with `<memory>` for the file's name.
     pub fn decode_exr(bytes: &[u8], limits: &Limits) -> Result<Self, ImageError> {
         limits.check_bytes(format::MEMORY, bytes.len() as u64)?;
-        openexr::decode(format::MEMORY, bytes, limits)
+        openexr::decode(format::MEMORY, Cursor::new(bytes), limits)
     }
 
     /// Writes an EXR of one part, with [`Compression::Zip`].
@@ -298,9 +281,38 @@ impl Layers {
     /// # Errors
     /// As [`Layers::write_exr`].
     pub fn write_exr_with(&self, path: &Path, compression: Compression) -> Result<(), ImageError> {
-        let bytes = openexr::encode(&path.display().to_string(), self, compression)?;
-        atomic::write(path, &bytes)
+        let mut target = atomic::Pending::create(path)?;
+        openexr::encode(&path.display().to_string(), self, compression, &mut target)?;
+        target.put_in_place()
     }
+}
+
+/// The places among `names` of the channels that [`Layers::to_image`] shows, and whether they are one grey.
+pub(crate) fn shown(names: &[&str]) -> Option<([usize; 3], bool)> {
+    let layer = shown_layer(names)?;
+    let find = |component: &str| {
+        let name = qualified(layer, component);
+        names.iter().position(|n| *n == name)
+    };
+    if let (Some(r), Some(g), Some(b)) = (find("R"), find("G"), find("B")) {
+        return Some(([r, g, b], false));
+    }
+    Some(([find("Y").unwrap_or(0); 3], true))
+}
+
+/// The name of the layer that [`Layers::to_image`] shows.
+fn shown_layer<'a>(names: &[&'a str]) -> Option<&'a str> {
+    let complete = |layer: &str| {
+        let has = |c| names.contains(&qualified(layer, c).as_str());
+        (has("R") && has("G") && has("B")) || has("Y")
+    };
+    let layers = names
+        .iter()
+        .map(|n| n.rsplit_once('.').map_or("", |(layer, _)| layer));
+    std::iter::once("")
+        .chain(layers)
+        .find(|layer| complete(layer))
+        .or((names.len() == 1).then_some(""))
 }
 
 fn qualified(layer: &str, component: &str) -> String {

@@ -11,8 +11,8 @@
 //! | PNG | 1 to 16 bits, grey, palette, alpha | 8 and 16 bits, sRGB transfer |
 //! | JPEG | baseline and progressive, EXIF orientation | no |
 //! | TIFF | 8 and 16 bits, float; grey, RGB, alpha; uncompressed, LZW, deflate, PackBits, JPEG | no |
-//! | KTX2 | one picture or a cube, with levels: half, float, RGB9E5, R11G11B10, BC6H, 8-bit codes | half, float, RGB9E5, BC6H |
-//! | DDS | the same; headers with and without DX10 | half, float, RGB9E5, BC6H, with DX10 |
+//! | KTX2 | one picture or a cube, with levels: half, float, RGB9E5, R11G11B10, BC6H, 8-bit codes; plain, Zstandard, ZLIB | half, float, RGB9E5, BC6H |
+//! | DDS | the same, plain; headers with and without DX10 | half, float, RGB9E5, BC6H, with DX10 |
 //!
 //! A reader decides by what the file holds, not by its name. It never alters values: what to do about a NaN is the
 //! caller's choice, and [`Image::scan`] finds it. [`Limits`] are checked before memory is taken. A writer makes a
@@ -51,6 +51,7 @@ mod image;
 mod layers;
 mod limits;
 mod raw;
+mod rows;
 mod scan;
 pub mod srgb;
 pub mod tonemap;
@@ -64,4 +65,5 @@ pub use image::Image;
 pub use layers::{Channel, ChannelData, Chromaticities, Compression, Layers};
 pub use limits::Limits;
 pub use raw::{RawData, RawImage};
+pub use rows::{Fill, Store, write_rows};
 pub use scan::{Found, Scan};

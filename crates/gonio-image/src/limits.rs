@@ -1,8 +1,74 @@
 //! [`Limits`]: how much a reader may allocate.
 
 use crate::ImageError;
-use std::io::Read;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
+
+/// A file that is read.
+pub(crate) enum Source {
+    File(BufReader<File>),
+    Memory(Cursor<Vec<u8>>),
+}
+
+impl Source {
+    /// The first bytes, at most `count` of them; reading begins with them again.
+    pub fn start(&mut self, count: u64) -> io::Result<Vec<u8>> {
+        let mut start = Vec::new();
+        self.take(count).read_to_end(&mut start)?;
+        self.rewind()?;
+        Ok(start)
+    }
+
+    /// All bytes.
+    pub fn into_bytes(mut self) -> io::Result<Vec<u8>> {
+        if let Self::Memory(bytes) = self {
+            return Ok(bytes.into_inner());
+        }
+        let mut bytes = Vec::new();
+        if let Self::File(file) = &self {
+            // Exactly its size: a vector that grows would hold twice as much for a moment.
+            let length = file.get_ref().metadata()?.len();
+            bytes.reserve_exact(usize::try_from(length).unwrap_or(0).saturating_add(1));
+        }
+        self.read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+impl Read for Source {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Self::File(file) => file.read(bytes),
+            Self::Memory(all) => all.read(bytes),
+        }
+    }
+}
+
+impl BufRead for Source {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        match self {
+            Self::File(file) => file.fill_buf(),
+            Self::Memory(all) => all.fill_buf(),
+        }
+    }
+
+    fn consume(&mut self, count: usize) {
+        match self {
+            Self::File(file) => file.consume(count),
+            Self::Memory(all) => all.consume(count),
+        }
+    }
+}
+
+impl Seek for Source {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        match self {
+            Self::File(file) => file.seek(to),
+            Self::Memory(all) => all.seek(to),
+        }
+    }
+}
 
 /// How large a picture may be. Every reader checks its header against these before it allocates pixels, so a file of a
 /// hundred bytes that claims to be 100,000 × 100,000 pixels is refused at once.
@@ -70,20 +136,33 @@ impl Limits {
         Ok(())
     }
 
+    /// The file, to be read piece by piece, if it is within the limit. Special files, which can't be gone back in, are read up
+    /// to the limit.
+    pub(crate) fn open(&self, path: &Path) -> Result<Source, ImageError> {
+        let io = |action| move |e| ImageError::io(path, action, e);
+        let file = File::open(path).map_err(io("open it"))?;
+        let about = file.metadata().map_err(io("ask for its length"))?;
+        if about.is_file() {
+            self.check_bytes(&path.display().to_string(), about.len())?;
+            return Ok(Source::File(BufReader::with_capacity(1 << 18, file)));
+        }
+        Ok(Source::Memory(Cursor::new(self.read_all(path, file)?)))
+    }
+
     /// The whole file, if it is within the limit. Special files without a length are read up to the limit.
     pub(crate) fn read_file(&self, path: &Path) -> Result<Vec<u8>, ImageError> {
-        let name = path.display().to_string();
-        let file = std::fs::File::open(path).map_err(|e| ImageError::io(path, "open it", e))?;
-        let length = file
-            .metadata()
-            .map_err(|e| ImageError::io(path, "ask for its length", e))?
-            .len();
-        self.check_bytes(&name, length)?;
+        self.open(path)?
+            .into_bytes()
+            .map_err(|e| ImageError::io(path, "read it", e))
+    }
+
+    /// What a special file gives, up to the limit.
+    fn read_all(&self, path: &Path, file: File) -> Result<Vec<u8>, ImageError> {
         let mut bytes = Vec::new();
         file.take(self.max_bytes.saturating_add(1))
             .read_to_end(&mut bytes)
             .map_err(|e| ImageError::io(path, "read it", e))?;
-        self.check_bytes(&name, bytes.len() as u64)?;
+        self.check_bytes(&path.display().to_string(), bytes.len() as u64)?;
         Ok(bytes)
     }
 }

@@ -1,5 +1,7 @@
 //! KTX2 and DDS: what is written is read back, other readers agree, broken files are errors.
 
+#![allow(clippy::unwrap_used)]
+
 use gonio_image::{CubeMap, FileFormat, Image, ImageError, Limits, TexelFormat};
 use std::path::Path;
 
@@ -212,4 +214,104 @@ fn a_misshapen_cube_is_refused() {
         std::array::from_fn(|_| square()),
     ];
     assert!(CubeMap::with_levels(levels).is_err());
+}
+
+/// The levels of a KTX2 file compressed by `pack` as `scheme`.
+fn supercompressed(good: &[u8], scheme: u32, pack: impl Fn(&[u8]) -> Vec<u8>) -> Vec<u8> {
+    let number = |at: usize| u64::from_le_bytes(good[at..at + 8].try_into().unwrap());
+    let levels = u32::from_le_bytes(good[40..44].try_into().unwrap()) as usize;
+    let at = |level: usize| 80 + 24 * level;
+    // The smallest level comes first.
+    let mut bytes = good[..number(at(levels - 1)) as usize].to_vec();
+    bytes[44..48].copy_from_slice(&scheme.to_le_bytes());
+    for level in (0..levels).rev() {
+        let (offset, length) = (number(at(level)) as usize, number(at(level) + 8) as usize);
+        let packed = pack(&good[offset..offset + length]);
+        let (start, count) = (bytes.len() as u64, packed.len() as u64);
+        bytes[at(level)..at(level) + 8].copy_from_slice(&start.to_le_bytes());
+        bytes[at(level) + 8..at(level) + 16].copy_from_slice(&count.to_le_bytes());
+        bytes.extend(packed);
+    }
+    bytes
+}
+
+fn zlib(data: &[u8]) -> Vec<u8> {
+    use std::io::Write;
+    let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::default());
+    encoder.write_all(data).unwrap();
+    encoder.finish().unwrap()
+}
+
+fn zstandard(data: &[u8]) -> Vec<u8> {
+    ruzstd::encoding::compress_to_vec(data, ruzstd::encoding::CompressionLevel::Fastest)
+}
+
+#[test]
+fn supercompressed_levels_are_read() {
+    for format in TexelFormat::ALL {
+        let good = encoded(FileFormat::Ktx2, format);
+        let plain = CubeMap::decode(&good, &Limits::default()).unwrap();
+        for bytes in [
+            supercompressed(&good, 2, zstandard),
+            supercompressed(&good, 3, zlib),
+        ] {
+            // Another reader takes the file for sound, too.
+            assert!(ktx2::Reader::new(&bytes[..]).is_ok());
+            let read = CubeMap::decode(&bytes, &Limits::default()).unwrap();
+            assert_eq!(read, plain, "{format}");
+        }
+    }
+}
+
+#[test]
+fn bad_supercompression_is_an_error() {
+    let good = encoded(FileFormat::Ktx2, TexelFormat::Half);
+    let error = |bytes: &[u8]| {
+        let error = CubeMap::decode(bytes, &Limits::default()).unwrap_err();
+        error.to_string()
+    };
+    let basis = error(&supercompressed(&good, 1, zlib));
+    assert!(
+        basis.contains("BasisLZ is not supported; Zstandard"),
+        "{basis}"
+    );
+    let other = error(&supercompressed(&good, 9, zlib));
+    assert!(other.contains("scheme 9"), "{other}");
+    for (scheme, pack) in [(2, zstandard as fn(&[u8]) -> Vec<u8>), (3, zlib)] {
+        // Short of a byte, and a byte too many; the small levels come first in the file, the first level is read first.
+        let short = error(&supercompressed(&good, scheme, |d| pack(&d[1..])));
+        assert!(
+            short.contains("level 0: found 3071 bytes, expected a"),
+            "{short}"
+        );
+        let long = error(&supercompressed(&good, scheme, |d| {
+            pack(&[d, &[0]].concat())
+        }));
+        assert!(long.contains("level 0: found more bytes"), "{long}");
+        // A stream that unpacks to 32 MiB is left after the bytes that are wanted.
+        let bomb = pack(&vec![0; 1 << 25]);
+        let large = error(&supercompressed(&good, scheme, |_| bomb.clone()));
+        assert!(large.contains("more bytes than that"), "{large}");
+        // A length that is not that of the header's picture.
+        let mut bytes = supercompressed(&good, scheme, pack);
+        bytes[96..104].copy_from_slice(&u64::MAX.to_le_bytes());
+        let claimed = error(&bytes);
+        assert!(
+            claimed.contains("byte 96: found 18446744073709551615"),
+            "{claimed}"
+        );
+        // Noise instead, and each length that the file can be cut to.
+        let noise = error(&supercompressed(&good, scheme, |_| vec![0xa5; 40]));
+        assert!(noise.contains("level 0: found a corrupt stream"), "{noise}");
+        let bytes = supercompressed(&good, scheme, pack);
+        for length in 0..bytes.len() {
+            assert!(CubeMap::decode(&bytes[..length], &Limits::default()).is_err());
+        }
+        for at in 80..bytes.len() {
+            let mut bytes = bytes.clone();
+            bytes[at] ^= 0x41;
+            // Read or refused: without a panic, within the limits.
+            let _ = CubeMap::decode(&bytes, &Limits::default());
+        }
+    }
 }

@@ -1,9 +1,10 @@
 //! KTX 2.0 (`.ktx2`): textures for Vulkan, OpenGL and the web.
 //!
 //! Layout: an identifier of 12 bytes, a header of 36, the index of 32, 24 bytes for each level, the data format descriptor,
-//! keys and values, and the levels, the smallest first. Source: Khronos, "KTX File Format Specification", 2.0, and "Khronos
+//! keys and values, and the levels, the smallest first, each compressed by itself if the header says so. Source: Khronos, "KTX File Format Specification", 2.0, and "Khronos
 //! Data Format Specification", 1.3.
 
+use super::supercompression::Scheme;
 use super::texel::Storage;
 use super::texture::{Shape, Texture, slice, u32_at, u64_at};
 use crate::{ImageError, Limits};
@@ -102,19 +103,7 @@ pub(super) fn decode(file: &str, bytes: &[u8], limits: &Limits) -> Result<Textur
             "1 or 6",
         ));
     }
-    if number(44) != 0 {
-        let scheme = match number(44) {
-            1 => "BasisLZ".into(),
-            2 => "Zstandard".into(),
-            3 => "ZLIB".into(),
-            n => format!("scheme {n}"),
-        };
-        return Err(ImageError::unsupported(
-            file,
-            format!("supercompression by {scheme}"),
-            "write it without (`ktx deflate` and `toktx --zcmp` add it)",
-        ));
-    }
+    let scheme = Scheme::of(file, number(44))?;
     let shape = Shape {
         width: number(20) as usize,
         // A height of 0 is a texture of one dimension.
@@ -130,17 +119,25 @@ pub(super) fn decode(file: &str, bytes: &[u8], limits: &Limits) -> Result<Textur
     })?;
     let mut levels = Vec::with_capacity(shape.levels);
     for level in 0..shape.levels {
-        let (offset, length) = (u64_at(index, 24 * level), u64_at(index, 24 * level + 8));
+        let at = 24 * level;
+        let (offset, length) = (u64_at(index, at), u64_at(index, at + 8));
         let face_bytes = shape.face_bytes(level);
-        if length != face_bytes.saturating_mul(shape.faces as u64) {
+        let expected = face_bytes.saturating_mul(shape.faces as u64);
+        // Of what is compressed, the length that it is to have is written beside.
+        let (said, place) = match scheme {
+            Scheme::None => (length, at + 8),
+            _ => (u64_at(index, at + 16), at + 16),
+        };
+        if said != expected {
             return Err(ImageError::format(
                 file,
-                format!("byte {}", HEADER + 24 * level + 8),
-                format!("{length} bytes for level {level}"),
-                format!("{}", face_bytes.saturating_mul(shape.faces as u64)),
+                format!("byte {}", HEADER + place),
+                format!("{said} bytes for level {level}"),
+                format!("{expected}"),
             ));
         }
         let data = slice(file, bytes, offset, length, || format!("level {level}"))?;
+        let data = scheme.expand(file, level, data, expected)?;
         let (width, height) = shape.level_size(level);
         let faces = data.chunks_exact(face_bytes as usize);
         levels.push(faces.map(|d| storage.decode(d, width, height)).collect());

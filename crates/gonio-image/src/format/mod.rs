@@ -6,6 +6,7 @@ pub(crate) mod openexr;
 mod primaries;
 pub(crate) mod radiance;
 pub(crate) mod raster;
+mod supercompression;
 mod texel;
 pub(crate) mod texture;
 
@@ -14,11 +15,16 @@ pub use texel::TexelFormat;
 pub(crate) use primaries::{apply as apply_matrix, to_rec709};
 pub(crate) use raster::Orientation;
 
+use crate::limits::Source;
 use crate::{Image, ImageError, Limits, RawData, RawImage};
+use std::io::{Cursor, Seek, SeekFrom};
 use std::path::Path;
 
 /// The name of a file that is none.
 pub(crate) const MEMORY: &str = "<memory>";
+
+/// Bytes that tell every format.
+const LONGEST_MAGIC: u64 = 12;
 
 /// A file format that this crate knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,14 +111,42 @@ fn sniff(file: &str, bytes: &[u8]) -> Result<FileFormat, ImageError> {
     })
 }
 
+/// Reads a picture piece by piece where its format lets it: all but JPEG, KTX2 and DDS.
+pub(crate) fn read_image(
+    file: &str,
+    mut source: Source,
+    limits: &Limits,
+) -> Result<Image, ImageError> {
+    let io = |source| ImageError::Io {
+        file: file.into(),
+        action: "read it",
+        source,
+    };
+    let start = source.start(LONGEST_MAGIC).map_err(io)?;
+    match sniff(file, &start)? {
+        FileFormat::Exr => openexr::decode_image(file, source, limits),
+        FileFormat::Hdr => {
+            let length = source.seek(SeekFrom::End(0)).map_err(io)?;
+            source.rewind().map_err(io)?;
+            radiance::decode(file, source, length, limits)
+        }
+        kind @ (FileFormat::Png | FileFormat::Jpeg | FileFormat::Tiff) => {
+            raster::decode_image(file, source, kind, limits)
+        }
+        FileFormat::Ktx2 | FileFormat::Dds => {
+            texture::decode_image(file, &source.into_bytes().map_err(io)?, limits)
+        }
+    }
+}
+
 pub(crate) fn decode_image(file: &str, bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
     match sniff(file, bytes)? {
-        FileFormat::Exr => openexr::decode_image(file, bytes, limits),
-        FileFormat::Hdr => radiance::decode(file, bytes, limits),
+        FileFormat::Exr => openexr::decode_image(file, Cursor::new(bytes), limits),
+        FileFormat::Hdr => radiance::decode(file, bytes, bytes.len() as u64, limits),
         FileFormat::Ktx2 | FileFormat::Dds => texture::decode_image(file, bytes, limits),
-        kind @ (FileFormat::Png | FileFormat::Jpeg | FileFormat::Tiff) => Ok(Image::from(
-            &raster::decode(file, bytes, kind, Orientation::Apply, limits)?,
-        )),
+        kind @ (FileFormat::Png | FileFormat::Jpeg | FileFormat::Tiff) => {
+            raster::decode_image(file, Cursor::new(bytes), kind, limits)
+        }
     }
 }
 
@@ -126,7 +160,7 @@ pub(crate) fn decode_raw(
         FileFormat::Exr => openexr::decode_raw(file, bytes, limits),
         kind @ (FileFormat::Hdr | FileFormat::Ktx2 | FileFormat::Dds) => {
             let image = match kind {
-                FileFormat::Hdr => radiance::decode(file, bytes, limits)?,
+                FileFormat::Hdr => radiance::decode(file, bytes, bytes.len() as u64, limits)?,
                 _ => texture::decode_image(file, bytes, limits)?,
             };
             Ok(RawImage {

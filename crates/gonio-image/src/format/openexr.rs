@@ -1,26 +1,106 @@
-//! OpenEXR, by the `exr` crate: reading here, writing in [`write`].
+//! OpenEXR, by the `exr` crate: what is read here, its blocks in [`blocks`], writing in [`write`].
 
+mod blocks;
 mod write;
 
-pub(crate) use write::encode;
+pub(crate) use write::{encode, write_rows};
 
 use crate::contain::contain;
-use crate::layers::Chromaticities;
-use crate::{Channel, ChannelData, Image, ImageError, Layers, Limits, RawData, RawImage};
-use exr::image::FlatSamples;
+use crate::layers::{self, Chromaticities};
+use crate::{Channel, ChannelData, Image, ImageError, Layers, Limits, RawData, RawImage, f16};
+use blocks::read_blocks;
+use exr::block::reader::Reader;
 use exr::math::Vec2;
 use exr::meta::attribute::{AttributeValue, SampleType, Text};
 use exr::meta::header::{Header, standard_names};
-use exr::prelude::{ReadChannels, ReadLayers};
 use std::collections::BTreeMap;
-use std::io::Cursor;
+use std::io::{Cursor, Read, Seek};
 
 /// What an `Unsupported` error recommends.
 const READ: &str = "flat, full-resolution pictures with parts of one size are";
 
-/// The picture to show of an EXR.
-pub(crate) fn decode_image(file: &str, bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
-    shown(file, &decode(file, bytes, limits)?)
+/// The picture to show of an EXR. Its samples go from the file's blocks straight into the picture, which is held once.
+pub(crate) fn decode_image(
+    file: &str,
+    source: impl Read + Seek,
+    limits: &Limits,
+) -> Result<Image, ImageError> {
+    guarded(file, || {
+        let reader = open(file, source)?;
+        let (width, height) = check_headers(file, reader.headers(), limits)?;
+        let names = names(file, reader.headers())?;
+        let shown = Shown::among(file, &names)?;
+        let colours = match shown {
+            Shown::Rgb(_) => chromaticities(reader.headers()),
+            Shown::Grey(_) => None,
+        };
+        let mut image = Image::new(width, height);
+        let mut line = Vec::with_capacity(width);
+        read_blocks(
+            file,
+            reader,
+            |part| {
+                names
+                    .iter()
+                    .enumerate()
+                    .any(|(i, n)| n.part == part && shown.has(i))
+            },
+            |found, x, y, samples| {
+                let Some(i) = names.iter().position(|n| (n.part, n.channel) == found) else {
+                    return;
+                };
+                let components = match shown {
+                    Shown::Grey(grey) if grey == i => 0..3,
+                    Shown::Rgb(rgb) => match rgb.iter().position(|c| *c == i) {
+                        Some(c) => c..c + 1,
+                        None => return,
+                    },
+                    Shown::Grey(_) => return,
+                };
+                line.clear();
+                samples.push_to(&mut line);
+                let start = y * width + x;
+                for (pixel, value) in image.pixels[start..start + line.len()]
+                    .iter_mut()
+                    .zip(&line)
+                {
+                    pixel[components.clone()].fill(*value);
+                }
+            },
+        )?;
+        if let Some(matrix) = colours.as_ref().and_then(super::to_rec709) {
+            for pixel in &mut image.pixels {
+                *pixel = super::apply_matrix(&matrix, *pixel);
+            }
+        }
+        Ok(image)
+    })
+}
+
+/// Reads what [`write_rows`] wrote; `seen` gets each channel of each row. Returns columns and rows.
+pub(crate) fn read_rows(
+    file: &str,
+    source: impl Read + Seek,
+    limits: &Limits,
+    seen: &mut dyn FnMut(usize, usize, &[f32]),
+) -> Result<[usize; 2], ImageError> {
+    guarded(file, || {
+        let reader = open(file, source)?;
+        let (width, height) = check_headers(file, reader.headers(), limits)?;
+        let mut line = Vec::with_capacity(width);
+        read_blocks(
+            file,
+            reader,
+            |_| true,
+            |(_, channel), _, y, samples| {
+                line.clear();
+                samples.push_to(&mut line);
+                // Blue, green and red: sorted by name.
+                seen(y, 2_usize.saturating_sub(channel), &line);
+            },
+        )?;
+        Ok([width, height])
+    })
 }
 
 /// The picture to show of an EXR, with its alpha.
@@ -29,8 +109,11 @@ pub(crate) fn decode_raw(
     bytes: &[u8],
     limits: &Limits,
 ) -> Result<RawImage, ImageError> {
-    let layers = decode(file, bytes, limits)?;
-    let image = shown(file, &layers)?;
+    let layers = decode(file, Cursor::new(bytes), limits)?;
+    let names: Vec<&str> = layers.channels.iter().map(|c| c.name.as_str()).collect();
+    let image = layers
+        .to_image()
+        .ok_or_else(|| nothing_to_show(file, &names))?;
     let alpha = layers.alpha();
     let pixels = image
         .pixels
@@ -45,90 +128,148 @@ pub(crate) fn decode_raw(
     })
 }
 
-fn shown(file: &str, layers: &Layers) -> Result<Image, ImageError> {
-    layers.to_image().ok_or_else(|| {
-        let names: Vec<&str> = layers
-            .channels
-            .iter()
-            .map(|c| c.name.as_str())
-            .take(20)
-            .collect();
-        ImageError::unsupported(
-            file,
-            format!("a picture of the channels {}", names.join(", ")),
-            "R, G and B, or Y, of one layer are",
-        )
-    })
+/// Which channels of an EXR are shown, by their places among all.
+#[derive(Clone, Copy)]
+enum Shown {
+    Rgb([usize; 3]),
+    Grey(usize),
+}
+
+impl Shown {
+    fn among(file: &str, names: &[Name]) -> Result<Self, ImageError> {
+        let names: Vec<&str> = names.iter().map(|n| n.name.as_str()).collect();
+        match layers::shown(&names) {
+            Some((rgb, false)) => Ok(Self::Rgb(rgb)),
+            Some(([grey, ..], true)) => Ok(Self::Grey(grey)),
+            None => Err(nothing_to_show(file, &names)),
+        }
+    }
+
+    fn has(self, channel: usize) -> bool {
+        match self {
+            Self::Rgb(rgb) => rgb.contains(&channel),
+            Self::Grey(grey) => grey == channel,
+        }
+    }
+}
+
+fn nothing_to_show(file: &str, names: &[&str]) -> ImageError {
+    let some: Vec<&str> = names.iter().take(20).copied().collect();
+    ImageError::unsupported(
+        file,
+        format!("a picture of the channels {}", some.join(", ")),
+        "R, G and B, or Y, of one layer are",
+    )
 }
 
 /// Every part, channel and string of an EXR.
-pub(crate) fn decode(file: &str, bytes: &[u8], limits: &Limits) -> Result<Layers, ImageError> {
-    contain(|| decode_unguarded(file, bytes, limits)).unwrap_or_else(|panic| {
-        Err(ImageError::format(
+pub(crate) fn decode(
+    file: &str,
+    source: impl Read + Seek,
+    limits: &Limits,
+) -> Result<Layers, ImageError> {
+    guarded(file, || {
+        let reader = open(file, source)?;
+        let headers = reader.headers();
+        let (width, height) = check_headers(file, headers, limits)?;
+        let names = names(file, headers)?;
+        let metadata = strings(headers);
+        let chromaticities = chromaticities(headers);
+        let pixels = width * height;
+        let mut channels: Vec<Channel> = names
+            .iter()
+            .map(|n| Channel {
+                name: n.name.clone(),
+                samples: match n.kind {
+                    SampleType::F16 => ChannelData::Half(vec![f16::ZERO; pixels]),
+                    SampleType::F32 => ChannelData::Float(vec![0.0; pixels]),
+                    SampleType::U32 => ChannelData::Uint(vec![0; pixels]),
+                },
+            })
+            .collect();
+        read_blocks(
             file,
-            "EXR data",
-            format!("data that its decoder gave up on ({panic})"),
-            "a valid OpenEXR file",
-        ))
+            reader,
+            |_| true,
+            |found, x, y, samples| {
+                if let Some(i) = names.iter().position(|n| (n.part, n.channel) == found) {
+                    samples.copy_to(&mut channels[i].samples, y * width + x);
+                }
+            },
+        )?;
+        Ok(Layers {
+            width,
+            height,
+            channels,
+            metadata,
+            chromaticities,
+        })
     })
 }
 
-fn decode_unguarded(file: &str, bytes: &[u8], limits: &Limits) -> Result<Layers, ImageError> {
-    let chunks = exr::block::read(Cursor::new(bytes), false)
-        .map_err(|e| translate(file, "EXR header", e))?;
-    let headers = chunks.headers();
-    let size = check_headers(file, headers, limits)?;
-    let metadata = strings(headers);
-    let chromaticities = headers[0].shared_attributes.chromaticities.map(|c| {
-        let point = |v: Vec2<f32>| [v.x(), v.y()];
-        Chromaticities {
-            red: point(c.red),
-            green: point(c.green),
-            blue: point(c.blue),
-            white: point(c.white),
-        }
-    });
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .non_parallel()
-        .from_chunks(chunks)
-        .map_err(|e| translate(file, "EXR pixels", e))?;
+/// Runs a decoder, which may panic on a corrupt file.
+fn guarded<T>(file: &str, decode: impl FnOnce() -> Result<T, ImageError>) -> Result<T, ImageError> {
+    contain(decode).unwrap_or_else(|panic| Err(given_up(file, &panic)))
+}
 
-    let several = image.layer_data.len() > 1;
-    let mut channels: Vec<Channel> = Vec::new();
-    for layer in image.layer_data {
-        let part = layer.attributes.layer_name.as_ref().map(string);
-        for channel in layer.channel_data.list {
-            let name = match part.as_deref() {
-                Some(part) if several => channel_name(part, &string(&channel.name)),
-                _ => string(&channel.name),
+fn given_up(file: &str, panic: &str) -> ImageError {
+    ImageError::format(
+        file,
+        "EXR data",
+        format!("data that its decoder gave up on ({panic})"),
+        "a valid OpenEXR file",
+    )
+}
+
+fn open<S: Read + Seek>(file: &str, source: S) -> Result<Reader<S>, ImageError> {
+    exr::block::read(source, false).map_err(|e| translate(file, "EXR header", e))
+}
+
+fn chromaticities(headers: &[Header]) -> Option<Chromaticities> {
+    let point = |v: Vec2<f32>| [v.x(), v.y()];
+    let c = headers.first()?.shared_attributes.chromaticities?;
+    Some(Chromaticities {
+        red: point(c.red),
+        green: point(c.green),
+        blue: point(c.blue),
+        white: point(c.white),
+    })
+}
+
+/// A channel of a part, and its name among all.
+struct Name {
+    part: usize,
+    channel: usize,
+    kind: SampleType,
+    name: String,
+}
+
+/// The channels of every part; no two have one name.
+fn names(file: &str, headers: &[Header]) -> Result<Vec<Name>, ImageError> {
+    let mut all: Vec<Name> = Vec::new();
+    for (part, header) in headers.iter().enumerate() {
+        let of_part = header.own_attributes.layer_name.as_ref().map(string);
+        for (channel, description) in header.channels.list.iter().enumerate() {
+            let name = match of_part.as_deref() {
+                Some(part) if headers.len() > 1 => channel_name(part, &string(&description.name)),
+                _ => string(&description.name),
             };
-            if channels.iter().any(|c| c.name == name) {
+            if all.iter().any(|n| n.name == name) {
                 return Err(ImageError::unsupported(
                     file,
                     format!("two channels named `{name}`"),
                     READ,
                 ));
             }
-            let samples = match channel.sample_data {
-                FlatSamples::F16(s) => ChannelData::Half(s),
-                FlatSamples::F32(s) => ChannelData::Float(s),
-                FlatSamples::U32(s) => ChannelData::Uint(s),
-            };
-            channels.push(Channel { name, samples });
+            all.push(Name {
+                part,
+                channel,
+                kind: description.sample_type,
+                name,
+            });
         }
     }
-    Ok(Layers {
-        width: size.0,
-        height: size.1,
-        channels,
-        metadata,
-        chromaticities,
-    })
+    Ok(all)
 }
 
 /// `part.channel`, unless the part is unnamed or the channel says so already.

@@ -6,9 +6,13 @@
 //! programs, and unlike Radiance's own, no half step is added to the mantissa: so what is written reads back as the
 //! nearest value, and black stays black.
 
+mod bytes;
 mod scanline;
 
+use crate::rows::Fill;
 use crate::{Image, ImageError, Limits};
+use bytes::Bytes;
+use std::io::{Read, Write};
 
 /// Longest header line that is read; Radiance's own limit is 2048.
 const LONGEST_LINE: usize = 65_536;
@@ -17,8 +21,6 @@ struct Header {
     /// Factor from file values to radiance: 1 / (EXPOSURE · COLORCORR).
     scale: [f32; 3],
     layout: Layout,
-    /// Where the pixels begin.
-    data: usize,
 }
 
 /// The order of the pixels in the file.
@@ -60,70 +62,126 @@ impl Layout {
     }
 }
 
-/// Decodes a Radiance picture.
-pub(crate) fn decode(file: &str, bytes: &[u8], limits: &Limits) -> Result<Image, ImageError> {
-    let header = read_header(file, bytes)?;
-    let layout = header.layout;
-    limits.check(file, layout.width as u64, layout.height as u64, 12)?;
-    let (lines, length) = layout.lines();
-    // The shortest a scan line can be: old run lengths reach 2²⁴ and more pixels in a few bytes, so only one byte a line
-    // can be asked for. It still stops a header of a hundred bytes before the picture is allocated.
-    let present = bytes.len() - header.data;
-    if present < lines {
-        return Err(ImageError::format(
-            file,
-            "pixels",
-            format!("{present} bytes"),
-            format!("{lines} scan lines of {length} pixels"),
-        ));
-    }
+/// Decodes a Radiance picture of `length` bytes, scan line by scan line.
+pub(crate) fn decode(
+    file: &str,
+    source: impl Read,
+    length: u64,
+    limits: &Limits,
+) -> Result<Image, ImageError> {
+    let mut lines = ScanLines::open(file, source, length, limits)?;
+    let (layout, scale) = (lines.header.layout, lines.header.scale);
     let mut image = Image::new(layout.width, layout.height);
-    let mut at = header.data;
-    let mut line = vec![[0u8; 4]; length];
-    for number in 0..lines {
-        at += scanline::decode(&bytes[at..], &mut line).map_err(|problem| {
-            ImageError::format(
-                file,
-                format!("scan line {number} of {lines}"),
-                problem,
-                format!("{length} RGBE pixels"),
-            )
-        })?;
+    while let Some((number, line)) = lines.next(file)? {
         for (i, &rgbe) in line.iter().enumerate() {
             let rgb = from_rgbe(rgbe);
-            image.pixels[layout.target(number, i)] =
-                std::array::from_fn(|c| rgb[c] * header.scale[c]);
+            image.pixels[layout.target(number, i)] = std::array::from_fn(|c| rgb[c] * scale[c]);
         }
     }
     Ok(image)
 }
 
-fn read_header(file: &str, bytes: &[u8]) -> Result<Header, ImageError> {
-    let mut at = 0;
+/// Reads what [`write_rows`] wrote; `seen` gets each channel of each row. Returns columns and rows.
+pub(crate) fn read_rows(
+    file: &str,
+    source: impl Read,
+    length: u64,
+    limits: &Limits,
+    seen: &mut dyn FnMut(usize, usize, &[f32]),
+) -> Result<[usize; 2], ImageError> {
+    let mut lines = ScanLines::open(file, source, length, limits)?;
+    let layout = lines.header.layout;
+    let mut row = vec![0.0; layout.width];
+    while let Some((y, line)) = lines.next(file)? {
+        for c in 0..3 {
+            for (to, &from) in row.iter_mut().zip(line) {
+                *to = from_rgbe(from)[c];
+            }
+            seen(y, c, &row);
+        }
+    }
+    Ok([layout.width, layout.height])
+}
+
+/// A scan line and its number.
+type Numbered<'a> = (usize, &'a [[u8; 4]]);
+
+/// The scan lines of a file, one after the other.
+struct ScanLines<R> {
+    bytes: Bytes<R>,
+    header: Header,
+    line: Vec<[u8; 4]>,
+    number: usize,
+}
+
+impl<R: Read> ScanLines<R> {
+    fn open(file: &str, source: R, length: u64, limits: &Limits) -> Result<Self, ImageError> {
+        let mut bytes = Bytes::new(source);
+        let header = read_header(file, &mut bytes)?;
+        let layout = header.layout;
+        limits.check(file, layout.width as u64, layout.height as u64, 12)?;
+        let (lines, line_length) = layout.lines();
+        // The shortest a scan line can be: old run lengths reach 2²⁴ and more pixels in a few bytes, so only one byte a
+        // line can be asked for. It still stops a header of a hundred bytes before the picture is allocated.
+        let present = length.saturating_sub(bytes.taken());
+        if present < lines as u64 {
+            return Err(ImageError::format(
+                file,
+                "pixels",
+                format!("{present} bytes"),
+                format!("{lines} scan lines of {line_length} pixels"),
+            ));
+        }
+        Ok(Self {
+            bytes,
+            line: vec![[0; 4]; line_length],
+            header,
+            number: 0,
+        })
+    }
+
+    /// The next scan line and its number; nothing after the last.
+    fn next(&mut self, file: &str) -> Result<Option<Numbered<'_>>, ImageError> {
+        let (number, (lines, length)) = (self.number, self.header.layout.lines());
+        if number == lines {
+            return Ok(None);
+        }
+        if let Err(problem) = scanline::decode(&mut self.bytes, &mut self.line) {
+            return Err(self.bytes.failure(file).unwrap_or_else(|| {
+                ImageError::format(
+                    file,
+                    format!("scan line {number} of {lines}"),
+                    problem,
+                    format!("{length} RGBE pixels"),
+                )
+            }));
+        }
+        self.number += 1;
+        Ok(Some((number, &self.line)))
+    }
+}
+
+fn read_header<R: Read>(file: &str, bytes: &mut Bytes<R>) -> Result<Header, ImageError> {
     let mut number = 0;
-    let mut next_line = || -> Result<(usize, String, usize), ImageError> {
+    let mut next_line = || -> Result<(usize, String), ImageError> {
         number += 1;
-        let rest = &bytes[at..];
-        let end = rest
-            .iter()
-            .take(LONGEST_LINE)
-            .position(|&b| b == b'\n')
-            .ok_or_else(|| {
+        let Some(line) = bytes.line(LONGEST_LINE) else {
+            return Err(bytes.failure(file).unwrap_or_else(|| {
                 ImageError::format(
                     file,
                     format!("header line {number}"),
                     "no end of the line",
                     "a header ended by an empty line, then the resolution",
                 )
-            })?;
-        at += end + 1;
-        let line = String::from_utf8_lossy(&rest[..end]);
-        Ok((number, line.trim_end_matches('\r').to_string(), at))
+            }));
+        };
+        let line = String::from_utf8_lossy(&line);
+        Ok((number, line.trim_end_matches('\r').to_string()))
     };
     next_line()?;
     let mut scale = [1.0f64; 3];
     loop {
-        let (number, line, _) = next_line()?;
+        let (number, line) = next_line()?;
         if line.trim().is_empty() {
             break;
         }
@@ -161,7 +219,7 @@ fn read_header(file: &str, bytes: &[u8]) -> Result<Header, ImageError> {
             _ => {}
         }
     }
-    let (number, line, data) = next_line()?;
+    let (number, line) = next_line()?;
     let layout = resolution(&line).ok_or_else(|| {
         ImageError::format(
             file,
@@ -173,7 +231,6 @@ fn read_header(file: &str, bytes: &[u8]) -> Result<Header, ImageError> {
     Ok(Header {
         scale: scale.map(|s| s as f32),
         layout,
-        data,
     })
 }
 
@@ -268,28 +325,75 @@ fn exponent(x: f64) -> i32 {
     ((x.to_bits() >> 52) & 0x7ff) as i32 - 1022
 }
 
-/// A whole Radiance file with new run lengths (flat where a scan line's length rules them out).
+/// Rows that are made at a time.
+const ROWS: usize = 64;
+
+/// Writes a whole Radiance file with new run lengths (flat where a scan line's length rules them out). `fill` gets the first row
+/// and room for some; `seen` gets each row as it is stored.
 ///
 /// # Errors
-/// A sentence that names the first pixel RGBE cannot hold.
-pub(crate) fn encode(image: &Image) -> Result<Vec<u8>, String> {
-    let mut out = Vec::with_capacity(image.pixels.len() * 4 + 100);
-    out.extend_from_slice(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n");
-    out.extend_from_slice(format!("-Y {} +X {}\n", image.height, image.width).as_bytes());
-    let mut line = Vec::with_capacity(image.width);
-    for (y, row) in image.pixels.chunks(image.width).enumerate() {
-        line.clear();
-        for (x, &rgb) in row.iter().enumerate() {
-            line.push(to_rgbe(rgb).map_err(|channel| {
-                format!(
-                    "Radiance HDR holds finite values from 0 up, but channel {} of pixel ({x}, {y}) is {}; write .exr",
-                    ["R", "G", "B"][channel],
-                    rgb[channel]
-                )
-            })?);
+/// What `fill` and `target` say, and [`ImageError::Parameter`] with the first pixel that RGBE cannot hold.
+pub(crate) fn write_rows(
+    file: &str,
+    [width, height]: [usize; 2],
+    target: &mut impl Write,
+    fill: &mut Fill<'_>,
+    seen: &mut dyn FnMut(usize, usize, &[f32]),
+) -> Result<(), ImageError> {
+    let io = |source| ImageError::Io {
+        file: file.into(),
+        action: "write it",
+        source,
+    };
+    let header = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n");
+    target.write_all(header.as_bytes()).map_err(io)?;
+    let mut pixels = Vec::new();
+    let mut line = Vec::with_capacity(width);
+    let mut out = Vec::new();
+    let mut stored = vec![0.0; width];
+    for first in (0..height).step_by(ROWS) {
+        pixels.resize(ROWS.min(height - first) * width, [0.0; 3]);
+        fill(first, &mut pixels)?;
+        for (y, row) in (first..).zip(pixels.chunks_exact(width)) {
+            line.clear();
+            for (x, &rgb) in row.iter().enumerate() {
+                line.push(to_rgbe(rgb).map_err(|channel| {
+                    ImageError::parameter(format!(
+                        "{file}: Radiance HDR holds finite values from 0 up, but channel {} of pixel ({x}, {y}) is {}; write .exr",
+                        ["R", "G", "B"][channel],
+                        rgb[channel]
+                    ))
+                })?);
+            }
+            scanline::encode(&mut line, &mut out);
+            target.write_all(&out).map_err(io)?;
+            out.clear();
+            for c in 0..3 {
+                for (to, &from) in stored.iter_mut().zip(&line) {
+                    *to = from_rgbe(from)[c];
+                }
+                seen(y, c, &stored);
+            }
         }
-        scanline::encode(&line, &mut out);
     }
+    Ok(())
+}
+
+/// A whole Radiance file in memory.
+#[cfg(test)]
+fn encode(image: &Image) -> Result<Vec<u8>, ImageError> {
+    let mut out = Vec::new();
+    write_rows(
+        "test.hdr",
+        [image.width, image.height],
+        &mut out,
+        &mut |first, rows| {
+            let start = first * image.width;
+            rows.copy_from_slice(&image.pixels[start..start + rows.len()]);
+            Ok(())
+        },
+        &mut |_, _, _| {},
+    )?;
     Ok(out)
 }
 

@@ -1,16 +1,18 @@
 use super::*;
 use crate::{Compression, f16};
-use exr::image::{AnyChannel, AnyChannels, Blocks, Encoding, Layer};
+use exr::image::{AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Layer};
 use exr::meta::attribute::{self, LineOrder};
 use exr::meta::header::LayerAttributes;
 use proptest::prelude::*;
 
 fn read(bytes: &[u8]) -> Result<Layers, ImageError> {
-    decode("test.exr", bytes, &Limits::default())
+    decode("test.exr", Cursor::new(bytes), &Limits::default())
 }
 
 fn write(layers: &Layers, compression: Compression) -> Vec<u8> {
-    encode("test.exr", layers, compression).unwrap()
+    let mut file = Cursor::new(Vec::new());
+    encode("test.exr", layers, compression, &mut file).unwrap();
+    file.into_inner()
 }
 
 /// As they are read: sorted.
@@ -68,7 +70,7 @@ fn non_finite_and_negative_values_are_kept() {
     image.set(1, 0, [f32::NAN; 3]);
     let back = decode_image(
         "t",
-        &write(&Layers::from_image(&image), Compression::Zip),
+        Cursor::new(write(&Layers::from_image(&image), Compression::Zip)),
         &Limits::default(),
     );
     let scan = back.unwrap().scan();
@@ -90,8 +92,13 @@ fn half_precision_rounds() {
 fn the_shown_layer() {
     let image = Image::filled(2, 1, [1.0, 2.0, 3.0]);
     let grey = |v: f32| ChannelData::Float(vec![v; 2]);
-    let show =
-        |layers: &Layers| decode_image("t", &write(layers, Compression::None), &Limits::default());
+    let show = |layers: &Layers| {
+        decode_image(
+            "t",
+            Cursor::new(write(layers, Compression::None)),
+            &Limits::default(),
+        )
+    };
 
     let mut layers = Layers::new(2, 1);
     layers.push("Z", grey(9.0)).unwrap();
@@ -203,7 +210,13 @@ fn what_cannot_be_written_is_refused() {
     let fails = |change: &dyn Fn(&mut Layers), words: &str| {
         let mut layers = Layers::from_image(&Image::new(2, 2));
         change(&mut layers);
-        let error = encode("test.exr", &layers, Compression::Zip).unwrap_err();
+        let error = encode(
+            "test.exr",
+            &layers,
+            Compression::Zip,
+            &mut Cursor::new(Vec::new()),
+        )
+        .unwrap_err();
         assert!(matches!(error, ImageError::Parameter { .. }));
         assert!(error.to_string().contains(words), "{error}");
     };

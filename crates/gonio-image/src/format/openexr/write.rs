@@ -1,48 +1,41 @@
 //! Writing OpenEXR.
 
-use crate::{ChannelData, Compression, ImageError, Layers};
-use exr::image::{AnyChannel, AnyChannels, Blocks, Encoding, FlatSamples, Layer};
+use super::blocks;
+use crate::rows::Fill;
+use crate::{Channel, ChannelData, Compression, ImageError, Layers, f16};
+use exr::block::writer::ChunksWriter;
+use exr::block::{BlockIndex, UncompressedBlock};
 use exr::math::Vec2;
-use exr::meta::attribute::{self, AttributeValue, LineOrder, Text};
-use exr::meta::header::{LayerAttributes, standard_names};
-use exr::prelude::WritableImage;
-use std::io::Cursor;
+use exr::meta::BlockDescription;
+use exr::meta::attribute::{self, AttributeValue, ChannelDescription, LineOrder, SampleType, Text};
+use exr::meta::header::{Header, LayerAttributes, standard_names};
+use rayon::prelude::*;
+use std::io::{BufWriter, Read, Seek, Write};
+use std::ops::Range;
 
-/// The bytes of an EXR of one part.
+/// Where an EXR is written: its header and its table of blocks are completed in the end.
+pub(crate) trait Target: Read + Write + Seek {}
+impl<T: Read + Write + Seek> Target for T {}
+
+/// Writes an EXR of one part.
 pub(crate) fn encode(
     file: &str,
     layers: &Layers,
     compression: Compression,
-) -> Result<Vec<u8>, ImageError> {
-    encode_or_say_why(layers, compression)
-        .map_err(|why| ImageError::parameter(format!("{file}: {why}")))
-}
-
-fn encode_or_say_why(layers: &Layers, compression: Compression) -> Result<Vec<u8>, String> {
-    let (width, height) = (layers.width, layers.height);
-    if width == 0 || height == 0 || layers.channels.is_empty() {
-        return Err(format!(
-            "a picture of {width} × {height} pixels and {} channels cannot be written",
-            layers.channels.len()
-        ));
-    }
-    if i32::try_from(width).is_err() || i32::try_from(height).is_err() {
-        return Err(format!("{width} × {height} does not fit an EXR"));
-    }
-    let encoding = Encoding {
-        compression: match compression {
-            Compression::None => attribute::Compression::Uncompressed,
-            Compression::Rle => attribute::Compression::RLE,
-            Compression::Zip => attribute::Compression::ZIP16,
-            Compression::Piz => attribute::Compression::PIZ,
-        },
-        blocks: Blocks::ScanLines,
-        line_order: LineOrder::Increasing,
-    };
-    let attributes = attributes(&layers.metadata)?;
-    let layer = Layer::new((width, height), attributes, encoding, channels(layers)?);
-    let mut image = exr::image::Image::from_layer(layer);
-    image.attributes.chromaticities = layers.chromaticities.map(|c| {
+    target: &mut impl Target,
+) -> Result<(), ImageError> {
+    let wrong = |why| ImageError::parameter(format!("{file}: {why}"));
+    let channels = channels(layers).map_err(wrong)?;
+    let mut header = header(
+        [layers.width, layers.height],
+        channels
+            .iter()
+            .map(|(name, c)| (name.clone(), sample_type(&c.samples))),
+        compression,
+    )
+    .map_err(wrong)?;
+    header.own_attributes = attributes(&layers.metadata).map_err(wrong)?;
+    header.shared_attributes.chromaticities = layers.chromaticities.map(|c| {
         let point = |[x, y]: [f32; 2]| Vec2(x, y);
         attribute::Chromaticities {
             red: point(c.red),
@@ -51,14 +44,191 @@ fn encode_or_say_why(layers: &Layers, compression: Compression) -> Result<Vec<u8
             white: point(c.white),
         }
     });
-    let mut bytes = Vec::new();
-    image
-        .write()
-        .non_parallel()
-        .to_buffered(Cursor::new(&mut bytes))
-        .map_err(|e| e.to_string())?;
-    sort_attributes(&mut bytes);
-    Ok(bytes)
+    let width = layers.width;
+    write_blocks(file, header, target, &mut |rows, bytes| {
+        for y in rows {
+            let row = y * width..(y + 1) * width;
+            for (_, channel) in &channels {
+                match &channel.samples {
+                    ChannelData::Half(s) => {
+                        bytes.extend(
+                            s[row.clone()]
+                                .iter()
+                                .flat_map(|v| v.to_bits().to_ne_bytes()),
+                        );
+                    }
+                    ChannelData::Float(s) => {
+                        bytes.extend(s[row.clone()].iter().flat_map(|v| v.to_ne_bytes()));
+                    }
+                    ChannelData::Uint(s) => {
+                        bytes.extend(s[row.clone()].iter().flat_map(|v| v.to_ne_bytes()));
+                    }
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Writes an EXR of the channels R, G and B, whose rows are made when they are needed: `fill` gets the first row and room for
+/// some. With `half` samples are rounded to half precision; `seen` gets each row as it is stored.
+pub(crate) fn write_rows(
+    file: &str,
+    size: [usize; 2],
+    half: bool,
+    target: &mut impl Target,
+    fill: &mut Fill<'_>,
+    seen: &mut dyn FnMut(usize, usize, &[f32]),
+) -> Result<(), ImageError> {
+    let wrong = |why| ImageError::parameter(format!("{file}: {why}"));
+    let kind = if half {
+        SampleType::F16
+    } else {
+        SampleType::F32
+    };
+    // Sorted by name, as the format wants them.
+    let names = ["B", "G", "R"].map(|name| (Text::from_slice_unchecked(name.as_bytes()), kind));
+    let header = header(size, names.into_iter(), Compression::Zip).map_err(wrong)?;
+    let width = size[0];
+    let mut pixels = Vec::new();
+    let mut line = vec![0.0_f32; width];
+    write_blocks(file, header, target, &mut |rows, bytes| {
+        pixels.resize(rows.len() * width, [0.0; 3]);
+        fill(rows.start, &mut pixels)?;
+        for (y, row) in rows.zip(pixels.chunks_exact(width)) {
+            for c in [2, 1, 0] {
+                for (to, from) in line.iter_mut().zip(row) {
+                    *to = from[c];
+                    if half {
+                        let rounded = f16::from_f32(from[c]);
+                        bytes.extend(rounded.to_bits().to_ne_bytes());
+                        *to = rounded.to_f32();
+                    } else {
+                        bytes.extend(from[c].to_ne_bytes());
+                    }
+                }
+                seen(y, c, &line);
+            }
+        }
+        Ok(())
+    })
+}
+
+fn sample_type(samples: &ChannelData) -> SampleType {
+    match samples {
+        ChannelData::Half(_) => SampleType::F16,
+        ChannelData::Float(_) => SampleType::F32,
+        ChannelData::Uint(_) => SampleType::U32,
+    }
+}
+
+/// The header of a part without attributes.
+fn header(
+    [width, height]: [usize; 2],
+    channels: impl ExactSizeIterator<Item = (Text, SampleType)>,
+    compression: Compression,
+) -> Result<Header, String> {
+    if width == 0 || height == 0 || channels.len() == 0 {
+        return Err(format!(
+            "a picture of {width} × {height} pixels and {} channels cannot be written",
+            channels.len()
+        ));
+    }
+    if i32::try_from(width).is_err() || i32::try_from(height).is_err() {
+        return Err(format!("{width} × {height} does not fit an EXR"));
+    }
+    let channels = channels
+        .map(|(name, kind)| ChannelDescription::named(name, kind))
+        .collect();
+    let compression = match compression {
+        Compression::None => attribute::Compression::Uncompressed,
+        Compression::Rle => attribute::Compression::RLE,
+        Compression::Zip => attribute::Compression::ZIP16,
+        Compression::Piz => attribute::Compression::PIZ,
+    };
+    let mut header = Header::new(Text::from_slice_unchecked(b""), (width, height), channels)
+        .with_encoding(
+            compression,
+            BlockDescription::ScanLines,
+            LineOrder::Increasing,
+        );
+    header.own_attributes = LayerAttributes::default();
+    Ok(header)
+}
+
+/// Appends the samples of some rows: of each row, channel after channel.
+type Lines<'a> = dyn FnMut(Range<usize>, &mut Vec<u8>) -> Result<(), ImageError> + 'a;
+
+/// Writes a file of one part; a few blocks are made at a time, and compressed side by side.
+fn write_blocks(
+    file: &str,
+    header: Header,
+    target: &mut impl Target,
+    lines: &mut Lines<'_>,
+) -> Result<(), ImageError> {
+    let Vec2(width, height) = header.layer_size;
+    let line_bytes = width * header.channels.bytes_per_pixel;
+    let block_rows = header.max_block_pixel_size().y();
+    let at_once = block_rows * blocks::at_once().max(16_usize.div_ceil(block_rows));
+    let mut plain = Vec::new();
+    let header_bytes = Header::write_all(std::slice::from_ref(&header), &mut plain, false)
+        .map(|()| plain.len())
+        .map_err(|e| failed(file, e))?;
+    // What the rows' maker says has to get through the encoder's own errors.
+    let mut refused = None;
+    let headers = std::iter::once(header).collect();
+    let outcome = exr::block::write(
+        BufWriter::new(&mut *target),
+        headers,
+        true,
+        |meta, writer| {
+            let mut bytes = Vec::new();
+            for first in (0..height).step_by(at_once) {
+                let rows = first..(first + at_once).min(height);
+                bytes.clear();
+                if let Err(why) = lines(rows.clone(), &mut bytes) {
+                    refused = Some(why);
+                    return Err(exr::error::Error::Aborted);
+                }
+                let chunks: Vec<_> = bytes
+                    .par_chunks(block_rows * line_bytes)
+                    .enumerate()
+                    .map(|(k, data)| {
+                        UncompressedBlock {
+                            index: BlockIndex {
+                                layer: 0,
+                                pixel_position: Vec2(0, first + k * block_rows),
+                                pixel_size: Vec2(width, data.len() / line_bytes),
+                                level: Vec2(0, 0),
+                            },
+                            data: data.to_vec(),
+                        }
+                        .compress_to_chunk(&meta.headers)
+                    })
+                    .collect();
+                for (k, chunk) in chunks.into_iter().enumerate() {
+                    writer.write_chunk(first / block_rows + k, chunk?)?;
+                }
+            }
+            Ok(())
+        },
+    );
+    if let Some(why) = refused {
+        return Err(why);
+    }
+    outcome.map_err(|e| failed(file, e))?;
+    sort_header(target, HEADER_START + header_bytes).map_err(|e| failed(file, e.into()))
+}
+
+fn failed(file: &str, error: exr::error::Error) -> ImageError {
+    match error {
+        exr::error::Error::Io(source) => ImageError::Io {
+            file: file.into(),
+            action: "write it",
+            source,
+        },
+        other => ImageError::parameter(format!("{file}: {other}")),
+    }
 }
 
 fn checked_name(what: &str, name: &str) -> Result<Text, String> {
@@ -70,9 +240,9 @@ fn checked_name(what: &str, name: &str) -> Result<Text, String> {
     Ok(Text::from_slice_unchecked(name.as_bytes()))
 }
 
-/// The channels, sorted by name as the format wants them.
-fn channels(layers: &Layers) -> Result<AnyChannels<FlatSamples>, String> {
-    let mut list: Vec<AnyChannel<FlatSamples>> = Vec::new();
+/// The channels and their names, sorted by name as the format wants them.
+fn channels(layers: &Layers) -> Result<Vec<(Text, &Channel)>, String> {
+    let mut list: Vec<(Text, &Channel)> = Vec::new();
     for channel in &layers.channels {
         if channel.samples.len() != layers.width * layers.height {
             return Err(format!(
@@ -84,17 +254,13 @@ fn channels(layers: &Layers) -> Result<AnyChannels<FlatSamples>, String> {
             ));
         }
         let name = checked_name("channel", &channel.name)?;
-        if list.iter().any(|c| c.name == name) {
+        if list.iter().any(|(n, _)| *n == name) {
             return Err(format!("two channels are named `{}`", channel.name));
         }
-        let samples = match &channel.samples {
-            ChannelData::Half(s) => FlatSamples::F16(s.clone()),
-            ChannelData::Float(s) => FlatSamples::F32(s.clone()),
-            ChannelData::Uint(s) => FlatSamples::U32(s.clone()),
-        };
-        list.push(AnyChannel::new(name, samples));
+        list.push((name, channel));
     }
-    Ok(AnyChannels::sort(list.into_iter().collect()))
+    list.sort_by(|(a, _), (b, _)| a.as_slice().cmp(b.as_slice()));
+    Ok(list)
 }
 
 /// The string attributes.
@@ -120,12 +286,23 @@ fn attributes(metadata: &[(String, String)]) -> Result<LayerAttributes, String> 
     Ok(attributes)
 }
 
+/// Bytes of the magic number and the version, before the attributes.
+const HEADER_START: usize = 8;
+
 /// Sorts the header's attributes by name. The encoder keeps them in a hash map, whose order changes from run to run: files
 /// of the same picture would differ. Sorted, the header is as long as it was, so offsets stay right.
+fn sort_header(target: &mut impl Target, length: usize) -> std::io::Result<()> {
+    let mut bytes = vec![0; length];
+    target.rewind()?;
+    target.read_exact(&mut bytes)?;
+    sort_attributes(&mut bytes);
+    target.rewind()?;
+    target.write_all(&bytes)
+}
+
 fn sort_attributes(bytes: &mut [u8]) {
-    const START: usize = 8;
     let mut records: Vec<&[u8]> = Vec::new();
-    let mut at = START;
+    let mut at = HEADER_START;
     // Each record: name, NUL, type, NUL, length (32 bits), value. An empty name ends the header.
     while bytes[at] != 0 {
         let after_nul = |from: usize| {
@@ -146,7 +323,7 @@ fn sort_attributes(bytes: &mut [u8]) {
     }
     records.sort_unstable();
     let sorted = records.concat();
-    bytes[START..at].copy_from_slice(&sorted);
+    bytes[HEADER_START..at].copy_from_slice(&sorted);
 }
 
 /// Where the `exr` crate keeps a reserved string.

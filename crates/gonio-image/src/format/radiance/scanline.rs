@@ -1,42 +1,38 @@
 //! One scan line of RGBE pixels: flat, old run lengths, new run lengths.
 
+use super::bytes::Bytes;
+use std::io::Read;
+
 /// Lengths for which new run lengths are defined.
 const NEW_LENGTHS: std::ops::RangeInclusive<usize> = 8..=32_767;
 /// The longest run, and the longest stretch of literal bytes, in new run lengths.
 const LONGEST_RUN: usize = 127;
 const LONGEST_LITERAL: usize = 128;
 
-/// Fills `line` from the start of `bytes`; returns how many bytes it took, or what was wrong.
-pub(super) fn decode(bytes: &[u8], line: &mut [[u8; 4]]) -> Result<usize, String> {
+/// Fills `line` from `bytes`, or says what was wrong.
+pub(super) fn decode<R: Read>(bytes: &mut Bytes<R>, line: &mut [[u8; 4]]) -> Result<(), String> {
     let n = line.len();
     if NEW_LENGTHS.contains(&n)
-        && let Some(&[2, 2, high, low]) = bytes.first_chunk()
+        && let &[2, 2, high, low] = bytes.peek(4)
         && high < 128
     {
         let claimed = usize::from(high) << 8 | usize::from(low);
         if claimed != n {
             return Err(format!("a scan line of {claimed} pixels"));
         }
-        return decode_new(&bytes[4..], line).map(|used| used + 4);
+        bytes.take(4);
+        return decode_new(bytes, line);
     }
     decode_old(bytes, line)
 }
 
 /// Each of the four components in turn: a count above 128 is a run of one byte, one up to 128 a stretch of bytes.
-fn decode_new(bytes: &[u8], line: &mut [[u8; 4]]) -> Result<usize, String> {
-    let mut at = 0;
-    let mut next = |count: usize| -> Result<&[u8], String> {
-        let end = at + count;
-        let taken = bytes
-            .get(at..end)
-            .ok_or_else(|| "the end of the file".to_string())?;
-        at = end;
-        Ok(taken)
-    };
+fn decode_new<R: Read>(bytes: &mut Bytes<R>, line: &mut [[u8; 4]]) -> Result<(), String> {
+    let end = || "the end of the file".to_string();
     for component in 0..4 {
         let mut x = 0;
         while x < line.len() {
-            let code = usize::from(next(1)?[0]);
+            let code = usize::from(bytes.take(1).ok_or_else(end)?[0]);
             let (count, run) = if code > 128 {
                 (code - 128, true)
             } else {
@@ -51,29 +47,27 @@ fn decode_new(bytes: &[u8], line: &mut [[u8; 4]]) -> Result<usize, String> {
                     "{count} samples at pixel {x}, where {left} are left"
                 ));
             }
-            let values = next(if run { 1 } else { count })?;
+            let values = bytes.take(if run { 1 } else { count }).ok_or_else(end)?;
             for (i, pixel) in line[x..x + count].iter_mut().enumerate() {
                 pixel[component] = values[if run { 0 } else { i }];
             }
             x += count;
         }
     }
-    Ok(at)
+    Ok(())
 }
 
 /// Pixels one after the other; (1, 1, 1, n) repeats the pixel before it n times, and each following such pixel counts
 /// 256 times as much.
-fn decode_old(bytes: &[u8], line: &mut [[u8; 4]]) -> Result<usize, String> {
+fn decode_old<R: Read>(bytes: &mut Bytes<R>, line: &mut [[u8; 4]]) -> Result<(), String> {
     let mut x = 0;
-    let mut at = 0;
     let mut shift = 0;
     while x < line.len() {
-        let Some(&pixel) = bytes[at..].first_chunk::<4>() else {
+        let Some(&[r, g, b, e]) = bytes.take(4) else {
             return Err(format!("the end of the file at pixel {x}"));
         };
-        at += 4;
-        let [1, 1, 1, count] = pixel else {
-            line[x] = pixel;
+        let [1, 1, 1, count] = [r, g, b, e] else {
+            line[x] = [r, g, b, e];
             x += 1;
             shift = 0;
             continue;
@@ -100,13 +94,16 @@ fn decode_old(bytes: &[u8], line: &mut [[u8; 4]]) -> Result<usize, String> {
         x += count;
         shift += 8;
     }
-    Ok(at)
+    Ok(())
 }
 
-/// Appends `line` to `out`.
-pub(super) fn encode(line: &[[u8; 4]], out: &mut Vec<u8>) {
+/// Appends `line` to `out`; what must not stand in a flat line is replaced in `line`, too.
+pub(super) fn encode(line: &mut [[u8; 4]], out: &mut Vec<u8>) {
     if !NEW_LENGTHS.contains(&line.len()) {
-        out.extend(line.iter().flat_map(|&p| not_a_run(p)));
+        for pixel in line.iter_mut() {
+            *pixel = not_a_run(*pixel);
+        }
+        out.extend(line.iter().flatten());
         return;
     }
     let n = line.len() as u16;

@@ -2,7 +2,7 @@ use super::*;
 use proptest::prelude::*;
 
 fn read(bytes: &[u8]) -> Result<Image, ImageError> {
-    decode("test.hdr", bytes, &Limits::default())
+    decode("test.hdr", bytes, bytes.len() as u64, &Limits::default())
 }
 
 fn file(header: &str, pixels: &[u8]) -> Vec<u8> {

@@ -1,7 +1,7 @@
 //! BC6H: blocks of 4 × 4 texels in 16 bytes.
 //!
 //! A block holds two colours and, for each texel, one of 16 steps between them; all arithmetic is on the bits of half
-//! floats, so errors are relative. Decoding knows every mode. Encoding uses the four modes of one region (11 to 14): two
+//! floats, so errors are relative. Decoding knows all fourteen modes, signed and unsigned. Encoding uses the four modes of one region (11 to 14): two
 //! colours of 10 bits, or one of 11, 12 or 16 bits and a difference of 9, 8 or 4.
 //! Source: Microsoft, "BC6H Format"; the OpenGL extension ARB_texture_compression_bptc.
 
