@@ -63,6 +63,14 @@ pub enum EnvError {
         /// The side that was expected.
         expected: usize,
     },
+    /// A folder, or a name with `{face}` in it, that does not lead to six faces.
+    #[error("{}: {found}, expected the six faces of a cube", place.display())]
+    MissingFaces {
+        /// The folder or the name.
+        place: PathBuf,
+        /// What is there instead.
+        found: String,
+    },
     /// The layout can't be told from the picture.
     #[error(
         "{}: {width} × {height} pixels{}: the layout can't be told from the picture",
@@ -142,7 +150,7 @@ impl EnvError {
             EnvError::Image(_) => None,
             EnvError::NotFound { suggestion, .. } => Some(match suggestion {
                 Some(word) => format!("did you mean \"{word}\"?"),
-                None => "an environment is \"uniform:1\", \"uniform:r/g/b\", \"sky:elevation=40\", or a picture (.hdr, .exr, .png, .jpg, .ktx2, .dds)".to_owned(),
+                None => "an environment is \"uniform:1\", \"uniform:r/g/b\", \"sky:elevation=40\", or a picture (.hdr, .exr, .png, .jpg, .tif, .ktx2, .dds)".to_owned(),
             }),
             EnvError::Texel { .. } => Some(
                 "replace them: `--env-sanitize` makes NaN and negative 0, infinite the largest finite value; `--repair` takes \
@@ -151,6 +159,11 @@ impl EnvError {
             ),
             EnvError::Shape { .. } => None,
             EnvError::Faces { .. } => Some("the six faces of a cube are squares of one size".to_owned()),
+            EnvError::MissingFaces { .. } => Some(
+                "they are px.exr … nz.exr (or .hdr, .png, .jpg, .tif, all alike), posx … negz, or right, left, top, bottom, \
+                 front, back; or name one file that shows everything"
+                    .to_owned(),
+            ),
             EnvError::AmbiguousLayout { disc: true, .. } => {
                 Some("say which it is: `--env-layout angular` or `--env-layout mirror-ball`".to_owned())
             }

@@ -53,7 +53,7 @@ pub use error::EnvError;
 pub use info::{EnvInfo, Peak};
 pub use irradiance::{Irradiance, LatLongTexels};
 pub use load::LoadOptions;
-pub use panorama::{Conversion, Kept, Panorama};
+pub use panorama::{Conversion, Kept, Panorama, Rows};
 pub use product::{Candidates, ProductSample, Reflected};
 pub use projection::{Convention, Layout, View};
 pub use proxy::Proxy;

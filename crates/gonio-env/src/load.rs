@@ -26,7 +26,7 @@ pub struct LoadOptions {
 }
 
 impl Environment {
-    /// Reads an environment in any layout, as [`Panorama::load`] does: a picture (PNG and JPEG are decoded from sRGB), a
+    /// Reads an environment in any layout, as [`Panorama::load`] does: a picture (codes of PNG, JPEG and TIFF are decoded from sRGB), a
     /// cube map, or six faces.
     ///
     /// Without `layout` it is found by content and shape; a square picture is an error that asks for the layout, since an

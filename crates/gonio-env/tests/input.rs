@@ -179,10 +179,35 @@ fn broken_files_are_errors_of_their_reader() {
         let name = path.file_name().unwrap().to_str().unwrap();
         assert!(error.to_string().contains(name), "{error}");
     }
-    assert!(matches!(
-        Environment::load(folder.path(), None),
-        Err(EnvError::Image(_))
-    ));
+}
+
+#[test]
+fn a_folder_without_six_faces_says_what_it_has() {
+    let folder = folder();
+    let error = |path: PathBuf| Environment::load(path, None).unwrap_err();
+    let of_folder = || error(folder.path().to_owned());
+    assert!(
+        of_folder()
+            .to_string()
+            .ends_with("a folder without any, expected the six faces of a cube")
+    );
+    let of_pattern = || error(folder.path().join("sky_{face}.png"));
+    assert!(
+        of_pattern()
+            .to_string()
+            .contains("sky_px.png, expected the six faces")
+    );
+    let face = Image::filled(4, 4, [1.0; 3]);
+    for name in ["posx.hdr", "negx.hdr", "sky_right.png"] {
+        face.write(&folder.path().join(name)).unwrap();
+    }
+    assert!(of_folder().to_string().contains("posx.hdr but no posy.hdr"));
+    assert!(
+        of_pattern()
+            .to_string()
+            .contains("sky_right.png but no sky_left.png")
+    );
+    assert!(of_pattern().help().unwrap().contains("px.exr … nz.exr"));
 }
 
 #[test]

@@ -17,12 +17,12 @@ const NAMES: [[&str; 6]; 4] = [
     ["+x", "-x", "+y", "-y", "+z", "-z"],
     ["right", "left", "top", "bottom", "front", "back"],
 ];
-const EXTENSIONS: [&str; 5] = ["exr", "hdr", "png", "jpg", "jpeg"];
+const EXTENSIONS: [&str; 7] = ["exr", "hdr", "png", "jpg", "jpeg", "tif", "tiff"];
 /// What a pattern has where the name of a face belongs.
 const FACE: &str = "{face}";
 
 impl Panorama {
-    /// Reads an environment: a picture (EXR, Radiance HDR, PNG, JPEG, KTX2, DDS), a cube map (KTX2, DDS), or six faces: a
+    /// Reads an environment: a picture (EXR, Radiance HDR, PNG, JPEG, TIFF, KTX2, DDS), a cube map (KTX2, DDS), or six faces: a
     /// folder with files such as `px.exr` … `nz.exr`, or a name with `{face}` in it.
     ///
     /// Without [`LoadOptions::layout`] it is found by content and shape: a cube map is one; 2 : 1 is lat-long, unless
@@ -31,8 +31,8 @@ impl Panorama {
     /// this program's own.
     ///
     /// # Errors
-    /// [`EnvError::NotFound`], [`EnvError::Image`], [`EnvError::AmbiguousLayout`], [`EnvError::Shape`], [`EnvError::Faces`], and
-    /// [`EnvError::Texel`] unless texels are replaced.
+    /// [`EnvError::NotFound`], [`EnvError::Image`], [`EnvError::AmbiguousLayout`], [`EnvError::Shape`], [`EnvError::Faces`],
+    /// [`EnvError::MissingFaces`], and [`EnvError::Texel`] unless texels are replaced.
     pub fn load(path: impl AsRef<Path>, options: &LoadOptions) -> Result<Self, EnvError> {
         let mut panorama = read(path.as_ref(), options)?;
         panorama.check_texels(options.remedy())?;
@@ -62,7 +62,7 @@ pub(crate) fn read(path: &Path, options: &LoadOptions) -> Result<Panorama, EnvEr
             suggestion: None,
         });
     }
-    if path.is_dir() && faces_of_folder(path).is_some() {
+    if path.is_dir() {
         return of_folder(path, options);
     }
     let mut start = Vec::new();
@@ -162,27 +162,50 @@ fn faces_of_folder(folder: &Path) -> Option<[PathBuf; 6]> {
 }
 
 fn of_folder(folder: &Path, options: &LoadOptions) -> Result<Panorama, EnvError> {
-    let files = faces_of_folder(folder).ok_or_else(|| EnvError::NotFound {
-        file: folder.to_owned(),
-        suggestion: None,
-    })?;
+    let Some(files) = faces_of_folder(folder) else {
+        let some = EXTENSIONS.iter().find_map(|extension| {
+            let with = |name: &str| folder.join(format!("{name}.{extension}"));
+            NAMES.iter().find_map(|names| incomplete(names, with))
+        });
+        return Err(EnvError::MissingFaces {
+            place: folder.to_owned(),
+            found: match some {
+                Some(found) => format!("a folder with {found}"),
+                None => "a folder without any".into(),
+            },
+        });
+    };
     of_files(&files, folder, options)
+}
+
+/// Which of six files are there and which are not, if there are both.
+fn incomplete(names: &[&str; 6], with: impl Fn(&str) -> PathBuf) -> Option<String> {
+    let (there, missing): (Vec<PathBuf>, Vec<PathBuf>) = names
+        .iter()
+        .map(|name| with(name))
+        .partition(|f| f.is_file());
+    let name = |file: &PathBuf| {
+        let name = file.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    };
+    let (there, missing) = (there.first()?, missing.first()?);
+    Some(format!("{} but no {}", name(there), name(missing)))
 }
 
 fn of_pattern(pattern: &str, options: &LoadOptions) -> Result<Panorama, EnvError> {
     let with = |name: &str| PathBuf::from(pattern.replace(FACE, name));
-    let names = NAMES
+    let whole = NAMES
         .iter()
-        .find(|names| names.iter().all(|n| with(n).is_file()))
-        .unwrap_or(&NAMES[0]);
-    let files = names.map(with);
-    if let Some(missing) = files.iter().find(|f| !f.is_file()) {
-        return Err(EnvError::NotFound {
-            file: missing.clone(),
-            suggestion: None,
+        .find(|names| names.iter().all(|n| with(n).is_file()));
+    let Some(names) = whole else {
+        let some = NAMES.iter().find_map(|names| incomplete(names, with));
+        return Err(EnvError::MissingFaces {
+            place: pattern.into(),
+            found: some
+                .unwrap_or_else(|| format!("no file such as {}", with(NAMES[0][0]).display())),
         });
-    }
-    of_files(&files, Path::new(pattern), options)
+    };
+    of_files(&names.map(with), Path::new(pattern), options)
 }
 
 fn of_files(

@@ -1,15 +1,17 @@
 //! [`Panorama`]: an environment as a picture, before it is light: read in any layout, turned into any other.
 
 mod load;
+mod rows;
 
 use crate::projection::{Convention, Layout, View};
-use crate::resample::{self, Filter, NO_ROTATION, Rotation, Target};
+use crate::resample::{self, Filter, NO_ROTATION, Rotation};
 use crate::texels::{self, Defects, Remedy};
 use crate::{EnvError, luminance};
 use gonio_image::{CubeMap, Image};
 use std::path::{Path, PathBuf};
 
 pub(crate) use load::{of_bytes, read};
+pub use rows::Rows;
 
 /// A picture of an environment, and how it is laid out.
 #[derive(Debug, Clone)]
@@ -99,9 +101,14 @@ impl Panorama {
     /// # Errors
     /// [`EnvError::Shape`] if it has no texels.
     pub fn from_cube(cube: &CubeMap, convention: Convention) -> Result<Self, EnvError> {
-        let n = cube.size;
+        let level = cube.levels.first();
+        Self::of_faces(level.map_or(&[], <[Image; 6]>::as_slice), convention)
+    }
+
+    fn of_faces(faces: &[Image], convention: Convention) -> Result<Self, EnvError> {
+        let n = faces.first().map_or(0, |face| face.width);
         let mut strip = Image::new(6 * n, n);
-        for (face, image) in cube.levels.first().into_iter().flatten().enumerate() {
+        for (face, image) in faces.iter().enumerate() {
             for (y, row) in image.pixels.chunks_exact(n.max(1)).enumerate() {
                 let start = y * 6 * n + face * n;
                 strip.pixels[start..start + n].copy_from_slice(row);
@@ -219,30 +226,33 @@ impl Panorama {
 
     /// The environment in another layout, turned, with the irradiance of both.
     pub fn converted(self, to: &Conversion<'_>) -> (Self, Kept) {
-        let before = resample::irradiance(&self.image, &self.view, &to.rotation);
-        let made = self.resampled(to);
-        let after = resample::irradiance(&made.image, &made.view, &NO_ROTATION);
-        (made, Kept { before, after })
+        let (file, defects) = (self.file.clone(), self.defects);
+        let mut rows = self.into_rows(to);
+        let [width, height] = rows.size();
+        let mut image = Image::new(width, height);
+        rows.make(0, &mut image.pixels);
+        let kept = rows.kept();
+        let made = Self {
+            image,
+            view: View::new(to.layout, to.convention),
+            file,
+            defects,
+        };
+        (made, kept)
     }
 
     /// [`Panorama::converted`] without measuring.
     pub fn resampled(self, to: &Conversion<'_>) -> Self {
-        let view = View::new(to.layout, to.convention);
-        let target = Target {
-            view,
-            size: to
-                .size
-                .unwrap_or_else(|| self.matching_size(to.layout))
-                .max(1),
-            rotation: to.rotation,
-            filter: to.filter,
-            progress: to.progress,
-        };
+        let (file, defects) = (self.file.clone(), self.defects);
+        let resampler = self.resampler(to);
+        let [width, height] = resampler.size();
+        let mut image = Image::new(width, height);
+        resampler.make(0, 0..width, &mut image.pixels);
         Self {
-            image: resample::resample(self.image, &self.view, &target),
-            view,
-            file: self.file,
-            defects: self.defects,
+            image,
+            view: View::new(to.layout, to.convention),
+            file,
+            defects,
         }
     }
 
@@ -266,17 +276,20 @@ impl Panorama {
     /// The faces as a cube map, with its smaller levels if `levels`: each texel the mean of its area in the level before,
     /// weighed by solid angle, across the edges of faces. Nothing if it is no cube.
     pub fn cube_map(&self, levels: bool) -> Option<CubeMap> {
+        self.clone().into_cube_map(levels)
+    }
+
+    /// [`Panorama::cube_map`], of which the picture is not needed any more.
+    pub fn into_cube_map(self, levels: bool) -> Option<CubeMap> {
         let mut all = vec![self.faces()?];
         let size = all[0][0].width;
         let convention = self.view.convention();
-        let mut before = Self::from_cube(
-            &CubeMap {
-                size,
-                levels: all.clone(),
-            },
-            convention,
-        )
-        .ok()?;
+        let mut before = if self.layout() == Layout::CubeStrip {
+            self
+        } else {
+            drop(self);
+            Self::of_faces(&all[0], convention).ok()?
+        };
         while levels && before.image.height > 1 {
             let to = Conversion {
                 convention,

@@ -158,6 +158,11 @@ impl Layout {
         }
     }
 
+    /// Whether [`Layout::jacobian`] is the same all along a row.
+    pub(crate) fn rows_weigh_alike(self) -> bool {
+        matches!(self, Layout::LatLong | Layout::EqualAreaOctahedral)
+    }
+
     /// Solid angle a unit of picture area, dω / (du dv) \[sr] (T4); 0 outside the layout's domain.
     ///
     /// Its integral over the picture is 4π.

@@ -2,18 +2,23 @@
 //!
 //! A texel of the new picture is the mean radiance of its area, weighed by solid angle: the old picture is interpolated
 //! at a grid of points in the texel, more of them the larger its solid angle is beside that of an old texel. Where that
-//! would take more than 8 × 8, the old picture is first halved, again weighed by solid angle. So no light falls between the
+//! would take more than 8 × 8, the old picture is first halved, again weighed by solid angle. Where a new texel is a whole number of
+//! old ones along each side, it is their mean. So no light falls between the
 //! samples, and irradiance stays. Where every new texel stands exactly on an old one, texels are copied.
 //!
-//! Memory: 12 bytes for each texel of the old and of the new picture, and a third of the old while it is halved.
+//! The new picture is made in pieces, so it need not be in memory. Memory: 12 bytes for each texel of the old picture, 3 more while
+//! it is halved.
 
 mod lookup;
+mod meter;
 
 use crate::projection::View;
 use gonio_image::Image;
 use gonio_num::{Real, Vec3};
 use lookup::Lookup;
+pub(crate) use meter::{Meter, irradiance};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How a new texel is made of old ones.
@@ -84,61 +89,150 @@ pub(crate) struct Target<'a> {
     pub progress: &'a (dyn Fn(f64) + Sync),
 }
 
-/// The picture in another view. `from` is used up: it may be halved on the way.
-pub(crate) fn resample(mut from: Image, from_view: &View, target: &Target) -> Image {
-    let view = &target.view;
-    let [width, height] = view.layout().shape().map(|n| n * target.size);
-    let copied = target.filter != Filter::Bilinear && is_aligned(&from, from_view, target);
-    let filter = if copied {
-        Filter::Nearest
-    } else {
-        target.filter
-    };
-    if filter == Filter::Area {
-        // Along a side, of the whole sphere's texels.
-        let linear = |image: &Image| {
-            let of = |v: &View, w: usize, h: usize| w as f64 * h as f64 * coverage(v);
-            (of(from_view, image.width, image.height) / of(view, width, height)).sqrt()
+impl Target<'_> {
+    /// Columns and rows.
+    fn picture(&self) -> [usize; 2] {
+        self.view.layout().shape().map(|n| n * self.size)
+    }
+}
+
+/// A picture that is being turned into another, in pieces of any size and order.
+pub(crate) struct Resampler<'a> {
+    from: Image,
+    from_view: View,
+    target: Target<'a>,
+    way: Way,
+    made: AtomicUsize,
+}
+
+/// How a texel is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// Of samples of its area.
+    Area,
+    /// Of so many old texels along a side, which are its area exactly.
+    Whole(usize),
+    /// By a look-up of its centre.
+    Bilinear,
+    /// As a copy.
+    Nearest,
+}
+
+impl<'a> Resampler<'a> {
+    /// `from` is used up: where its texels are much smaller than the target's, it is halved.
+    pub fn new(mut from: Image, from_view: &View, target: Target<'a>) -> Self {
+        let view = &target.view;
+        let [width, height] = target.picture();
+        let way = match target.filter {
+            Filter::Bilinear => Way::Bilinear,
+            Filter::Nearest => Way::Nearest,
+            Filter::Area if is_aligned(&from, from_view, &target) => Way::Nearest,
+            Filter::Area => whole(&from, from_view, &target).map_or(Way::Area, Way::Whole),
         };
-        while linear(&from) > MOST_SAMPLES as f64 / 2.0 {
-            match halved(&from, from_view) {
-                Some(smaller) => from = smaller,
-                None => break,
+        if way == Way::Area {
+            // Along a side, of the whole sphere's texels.
+            let linear = |image: &Image| {
+                let of = |v: &View, w: usize, h: usize| w as f64 * h as f64 * coverage(v);
+                (of(from_view, image.width, image.height) / of(view, width, height)).sqrt()
+            };
+            while linear(&from) > MOST_SAMPLES as f64 / 2.0 {
+                match halved(&from, from_view) {
+                    Some(smaller) => from = smaller,
+                    None => break,
+                }
             }
         }
+        Self {
+            from,
+            from_view: *from_view,
+            target,
+            way,
+            made: AtomicUsize::new(0),
+        }
     }
-    let lookup = Lookup::new(&from, from_view);
-    let mut image = Image::new(width, height);
-    let done = AtomicUsize::new(0);
-    let texel_in = 1.0 / (from.width as f64 * from.height as f64);
-    image
-        .pixels
-        .par_chunks_mut(width)
-        .enumerate()
-        .for_each(|(y, row)| {
-            for (x, texel) in row.iter_mut().enumerate() {
+
+    /// Columns and rows of the new picture.
+    pub fn size(&self) -> [usize; 2] {
+        self.target.picture()
+    }
+
+    /// Makes the texels of these columns, in as many rows from `first` on as `texels` has room for.
+    pub fn make(&self, first: usize, columns: Range<usize>, texels: &mut [[f32; 3]]) {
+        let [width, height] = self.size();
+        let lookup = Lookup::new(&self.from, &self.from_view);
+        let texel_in = 1.0 / (self.from.width as f64 * self.from.height as f64);
+        let rows = texels.par_chunks_exact_mut(columns.len());
+        rows.enumerate().for_each(|(k, row)| {
+            for (x, texel) in columns.clone().zip(row) {
                 let place = Place {
                     x,
-                    y,
+                    y: first + k,
                     width,
                     height,
                 };
-                *texel = match filter {
-                    Filter::Area => area(&lookup, from_view, target, &place, texel_in),
-                    Filter::Bilinear => match place.direction(target, 0.5, 0.5) {
-                        Some((d, _)) => lookup.bilinear(d.to_f32()),
-                        None => [0.0; 3],
-                    },
-                    Filter::Nearest => match place.direction(target, 0.5, 0.5) {
-                        Some((d, _)) => lookup.nearest(from_view.uv(d).map(|c| c as f32)),
-                        None => [0.0; 3],
-                    },
-                };
+                *texel = self.texel(&lookup, &place, texel_in);
             }
-            let rows = done.fetch_add(1, Ordering::Relaxed) + 1;
-            (target.progress)(rows as f64 / height as f64);
+            let made = self.made.fetch_add(columns.len(), Ordering::Relaxed) + columns.len();
+            (self.target.progress)(made as f64 / (width as f64 * height as f64));
         });
-    image
+    }
+
+    fn texel(&self, lookup: &Lookup<'_>, place: &Place, texel_in: f64) -> [f32; 3] {
+        let (from_view, target) = (&self.from_view, &self.target);
+        match self.way {
+            Way::Area => return area(lookup, from_view, target, place, texel_in),
+            Way::Whole(side) => {
+                return mean(
+                    &self.from,
+                    from_view,
+                    [place.x * side, place.y * side],
+                    side,
+                );
+            }
+            Way::Bilinear | Way::Nearest => {}
+        }
+        match (self.way, place.direction(target, 0.5, 0.5)) {
+            (_, None) => [0.0; 3],
+            (Way::Nearest, Some((d, _))) => lookup.nearest(from_view.uv(d).map(|c| c as f32)),
+            (_, Some((d, _))) => lookup.bilinear(d.to_f32()),
+        }
+    }
+}
+
+/// How many old texels along a side each new one consists of, if nothing but the size changes and it is a whole number.
+fn whole(from: &Image, from_view: &View, target: &Target) -> Option<usize> {
+    let [width, height] = target.picture();
+    let side = from.width / width;
+    let same = *from_view == target.view && target.rotation == NO_ROTATION;
+    (same && side > 1 && side * width == from.width && side * height == from.height).then_some(side)
+}
+
+/// The mean of so many texels along a side, weighed by solid angle; black if they show nothing.
+fn mean(image: &Image, view: &View, [left, top]: [usize; 2], side: usize) -> [f32; 3] {
+    let (mut sum, mut total) = ([0.0_f64; 3], 0.0);
+    for y in top..top + side {
+        let weight_at = |x: usize| {
+            view.layout().jacobian([
+                (x as f64 + 0.5) / image.width as f64,
+                (y as f64 + 0.5) / image.height as f64,
+            ])
+        };
+        let of_row = view.layout().rows_weigh_alike().then(|| weight_at(left));
+        for x in left..left + side {
+            let weight = of_row.unwrap_or_else(|| weight_at(x));
+            if weight > 0.0 {
+                for (s, l) in sum.iter_mut().zip(image.pixels[y * image.width + x]) {
+                    *s += weight * f64::from(l);
+                }
+                total += weight;
+            }
+        }
+    }
+    if total > 0.0 {
+        sum.map(|s| (s / total) as f32)
+    } else {
+        [0.0; 3]
+    }
 }
 
 /// Share of the picture that shows the sphere.
@@ -223,8 +317,7 @@ fn area(
 
 /// Whether new texels stand exactly on old ones of the same solid angle: looked at for 256 of them.
 fn is_aligned(from: &Image, from_view: &View, target: &Target) -> bool {
-    let layout = target.view.layout();
-    let [width, height] = layout.shape().map(|n| n * target.size);
+    let [width, height] = target.picture();
     let mut seen = false;
     for k in 0..256_usize {
         // Low-discrepancy places: Roberts' R2 sequence.
@@ -271,24 +364,7 @@ pub(crate) fn halved(image: &Image, view: &View) -> Option<Image> {
         .enumerate()
         .for_each(|(y, row)| {
             for (x, texel) in row.iter_mut().enumerate() {
-                let (mut sum, mut total) = ([0.0_f64; 3], 0.0);
-                for k in 0..4 {
-                    let (i, j) = (2 * x + k % 2, 2 * y + k / 2);
-                    let uv = [
-                        (i as f64 + 0.5) / image.width as f64,
-                        (j as f64 + 0.5) / image.height as f64,
-                    ];
-                    let weight = layout.jacobian(uv);
-                    if weight > 0.0 {
-                        for (s, l) in sum.iter_mut().zip(image.pixels[j * image.width + i]) {
-                            *s += weight * f64::from(l);
-                        }
-                        total += weight;
-                    }
-                }
-                if total > 0.0 {
-                    *texel = sum.map(|s| (s / total) as f32);
-                }
+                *texel = mean(image, view, [2 * x, 2 * y], 2);
             }
         });
     Some(half)
@@ -303,62 +379,3 @@ pub const SIX_AXES: [Vec3<f64>; 6] = [
     Vec3::new(0.0, 0.0, 1.0),
     Vec3::new(0.0, 0.0, -1.0),
 ];
-
-/// Rows that a picture is measured with.
-const MEASURED_ROWS: usize = 512;
-
-/// Irradiance \[W m⁻²] on the six axes, of a picture after the rotation: the flux of its texels, each with its mean radiance
-/// and the solid angle of what it shows; halved while there are more than enough, summed in parts where there are few.
-pub(crate) fn irradiance(image: &Image, view: &View, rotation: &Rotation) -> [[f64; 3]; 6] {
-    let [columns, rows] = view.layout().shape();
-    let cell = |image: &Image| (image.width / columns).min(image.height / rows);
-    let mut smaller = None;
-    while cell(smaller.as_ref().unwrap_or(image)) > MEASURED_ROWS {
-        match halved(smaller.as_ref().unwrap_or(image), view) {
-            Some(half) => smaller = Some(half),
-            None => break,
-        }
-    }
-    let image = smaller.as_ref().unwrap_or(image);
-    // Texels that a rim cuts are in parts, too.
-    let cut = view.layout().is_disc() || view.layout() == crate::Layout::DualParaboloid;
-    let parts = (MEASURED_ROWS / 2)
-        .div_ceil(cell(image).max(1))
-        .max(if cut { 4 } else { 1 });
-    let (width, height) = (image.width * parts, image.height * parts);
-    let layout = view.layout();
-    let row_sums = (0..height).into_par_iter().map(|y| {
-        let (mut sums, mut total) = ([[0.0_f64; 3]; 6], 0.0_f64);
-        for x in 0..width {
-            let uv = [
-                (x as f64 + 0.5) / width as f64,
-                (y as f64 + 0.5) / height as f64,
-            ];
-            let weight = layout.jacobian(uv);
-            if weight <= 0.0 {
-                continue;
-            }
-            total += weight;
-            let d: Vec3<f64> = view.direction(uv);
-            let radiance = image.pixels[y / parts * image.width + x / parts];
-            for (sum, axis) in sums.iter_mut().zip(SIX_AXES) {
-                let cosine = turned_back(rotation, axis).dot(d).max(0.0);
-                for (s, l) in sum.iter_mut().zip(radiance) {
-                    *s += weight * cosine * f64::from(l);
-                }
-            }
-        }
-        (sums, total)
-    });
-    // In order of the rows: the same sum for any number of threads.
-    let rows: Vec<_> = row_sums.collect();
-    let (mut sums, mut total) = ([[0.0; 3]; 6], 0.0);
-    for (row, weight) in rows {
-        for (sum, part) in sums.iter_mut().flatten().zip(row.iter().flatten()) {
-            *sum += part;
-        }
-        total += weight;
-    }
-    // The sphere's 4π shared out among what was summed.
-    sums.map(|sum| sum.map(|s| s * 4.0 * std::f64::consts::PI / total))
-}
