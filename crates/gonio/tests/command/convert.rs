@@ -159,3 +159,122 @@ fn black_and_single_texels_have_a_stated_result() {
             .all(|face| *face == Image::filled(2, 2, [3.0; 3]))
     );
 }
+
+/// What a person may hand over by mistake.
+#[test]
+fn what_is_no_panorama_is_named() {
+    let place = Place::new();
+    place.picture("sky.exr", &panorama());
+    std::fs::create_dir(place.path().join("empty")).unwrap();
+    place.write("nothing.hdr", b"");
+    // 4 GiB without a block on the disk: of a picture that ends, and of nothing.
+    for (name, start) in [
+        ("zeros.exr", &b""[..]),
+        (
+            "huge.hdr",
+            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 8192\n",
+        ),
+        ("huge.png", b"\x89PNG\r\n\x1a\n"),
+        ("huge.tif", b"II*\0"),
+    ] {
+        place.write(name, start);
+        let file = std::fs::File::options()
+            .write(true)
+            .open(place.path().join(name))
+            .unwrap();
+        file.set_len(4 << 30).unwrap();
+    }
+    for (name, words) in [
+        (
+            "empty",
+            &[
+                "empty: a folder without any, expected the six faces of a cube",
+                "px.exr",
+            ][..],
+        ),
+        (
+            "nothing.hdr",
+            &["nothing.hdr", "an empty file", "EXR, Radiance HDR"],
+        ),
+        ("zeros.exr", &["zeros.exr", "bytes 00 00", "expected EXR"]),
+        ("huge.hdr", &["huge.hdr", "exceed the limit"]),
+        ("huge.png", &["huge.png", "PNG"]),
+        ("huge.tif", &["huge.tif", "TIFF"]),
+    ] {
+        for arguments in [
+            &["env", "convert", name, "out.exr", "--from", "lat-long"][..],
+            &["env", "info", name],
+        ] {
+            place.bad(arguments, 3, words);
+        }
+    }
+}
+
+#[test]
+fn a_tiff_is_a_panorama_too() {
+    let place = Place::new();
+    place.write("sky.tif", tiff_of_floats(&panorama()));
+    place.good(&["env", "convert", "sky.tif", "sky.exr"]);
+    assert_eq!(place.image("sky.exr"), panorama());
+}
+
+/// A TIFF of 32-bit floats in one strip: the directory first, then what its entries point to. TIFF 6.0, section 2.
+fn tiff_of_floats(image: &Image) -> Vec<u8> {
+    let (width, height) = (image.width as u32, image.height as u32);
+    let entries: [[u32; 4]; 10] = [
+        [256, 4, 1, width],
+        [257, 4, 1, height],
+        // Bits, and the kind of sample (3, a float), of each channel are after the directory.
+        [258, 3, 3, 134],
+        [259, 3, 1, 1],
+        [262, 3, 1, 2],
+        [273, 4, 1, 146],
+        [277, 3, 1, 3],
+        [278, 4, 1, height],
+        [279, 4, 1, 12 * width * height],
+        [339, 3, 3, 140],
+    ];
+    let mut bytes = b"II*\0\x08\0\0\0\x0a\0".to_vec();
+    for [tag, kind, count, value] in entries {
+        bytes.extend((tag as u16).to_le_bytes());
+        bytes.extend((kind as u16).to_le_bytes());
+        bytes.extend(count.to_le_bytes());
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes.extend([0; 4]);
+    for number in [32_u16, 32, 32, 3, 3, 3] {
+        bytes.extend(number.to_le_bytes());
+    }
+    let samples = image.pixels.iter().flatten();
+    bytes.extend(samples.flat_map(|c| c.to_le_bytes()));
+    bytes
+}
+
+/// Standard error is a terminal only for who watches: `script` makes one.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_conversion_shows_how_far_it_is() {
+    let place = Place::new();
+    place.picture("sky.exr", &Image::filled(512, 256, [1.0; 3]));
+    let command = format!(
+        "{} env convert sky.exr out.exr --to octahedral --size 400",
+        env!("CARGO_BIN_EXE_gonio")
+    );
+    let run = std::process::Command::new("script")
+        .args(["-qec", &command, "/dev/null"])
+        .current_dir(place.path())
+        .env("TERM", "xterm")
+        .output();
+    let Ok(output) = run else {
+        eprintln!("skipped: no `script` here");
+        return;
+    };
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{said}");
+    for word in ["reading", "converting", " %"] {
+        assert!(said.contains(word), "no {word:?} in {said}");
+    }
+    // Without a terminal there is nothing to see.
+    let quiet = place.good(&["env", "convert", "sky.exr", "out.exr", "--to", "octahedral"]);
+    assert_eq!(quiet.err, "");
+}

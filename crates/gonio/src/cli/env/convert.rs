@@ -11,10 +11,10 @@ use gonio_env::{
 use gonio_image::TexelFormat;
 use gonio_image::tonemap::ToneMap;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use output::Form;
+use output::{Form, Made};
 use serde_json::json;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
 #[command(after_help = "\
@@ -28,9 +28,10 @@ Examples:
 Layouts: lat-long, cube, cube-cross, cube-cross-vertical, cube-strip, cube-strip-vertical, cube-faces, octahedral,
 equal-area-octahedral, angular, mirror-ball, dual-paraboloid.
 Conventions: gonio, pbrt, mitsuba, blender, gltf, opengl, unreal; the book says what each means.
-A KTX2 or DDS file holds a cube, with --mips its smaller levels, or one picture.")]
+A KTX2 or DDS file holds a cube, with --mips its smaller levels, or one picture.
+Memory: 12 bytes for each texel of IN and some rows; a KTX2 or DDS file takes 12 more for each texel of OUT, then up to 54 without IN.")]
 pub(in crate::cli) struct Arguments {
-    /// A panorama (EXR, HDR, PNG, JPEG, KTX2, DDS), a folder with px.exr … nz.exr, or a name with {face} in it
+    /// A panorama (EXR, HDR, PNG, JPEG, TIFF, KTX2, DDS), a folder with px.exr … nz.exr, or a name with {face} in it
     from: PathBuf,
     /// The file to write, by its extension EXR, HDR, PNG, KTX2 or DDS; for --to cube-faces a folder, or a name with {face} in it
     to: PathBuf,
@@ -130,11 +131,7 @@ pub(super) fn run(arguments: Arguments) -> Result<(), Failure> {
     };
     form.check(&arguments)?;
     let start = Instant::now();
-    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{msg:10} {bar:18.cyan/dim} {percent} %") {
-        bar.set_style(style.progress_chars("━━─"));
-    }
-    bar.set_message("reading");
+    let bar = Bar::new();
     let panorama = Panorama::load(&arguments.from, &options).map_err(rephrased)?;
     match panorama.replaced_texels() {
         0 => {}
@@ -144,7 +141,7 @@ pub(super) fn run(arguments: Arguments) -> Result<(), Failure> {
         )),
     }
     let read = Described::of(&panorama);
-    bar.set_message("converting");
+    bar.step("converting");
     let [yaw, pitch, roll] = arguments.rotate.0;
     let conversion = Conversion {
         layout: form.layout,
@@ -152,14 +149,17 @@ pub(super) fn run(arguments: Arguments) -> Result<(), Failure> {
         size: arguments.size.map(|n| n as usize),
         rotation: rotation_deg(yaw, pitch, roll),
         filter: arguments.filter,
-        progress: &|share| bar.set_position((share * 1000.0) as u64),
+        progress: &|share| bar.update(share),
     };
-    let (made, kept) = panorama.converted(&conversion);
-    bar.set_message("writing");
-    let written = Described::of(&made);
-    let files = form.write(&made, &arguments);
-    bar.finish_and_clear();
-    let files = files?;
+    let made = form.make(panorama, &conversion, &arguments);
+    bar.finish();
+    let Made {
+        written,
+        kept,
+        files,
+        above,
+    } = made?;
+    form.warn_of(above, &arguments);
     if arguments.filter == Filter::Area && kept.worst() > 0.01 {
         note(&format!(
             "irradiance changed by {:.1} %: texels of {} are coarse beside the light's detail; a larger --size keeps more",
@@ -188,6 +188,34 @@ pub(super) fn run(arguments: Arguments) -> Result<(), Failure> {
         table(&kept),
         seconds
     ))
+}
+
+/// A bar on standard error, when that is a terminal. It shows whether anything goes on where no share is known.
+struct Bar(ProgressBar);
+
+impl Bar {
+    fn new() -> Self {
+        let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr());
+        let style = "{spinner} {msg:10} {bar:18.cyan/dim} {percent:>3} %  {elapsed}";
+        if let Ok(style) = ProgressStyle::with_template(style) {
+            bar.set_style(style.progress_chars("━━─"));
+        }
+        bar.set_message("reading");
+        bar.enable_steady_tick(Duration::from_millis(250));
+        Self(bar)
+    }
+
+    fn step(&self, name: &'static str) {
+        self.0.set_message(name);
+    }
+
+    fn update(&self, share: f64) {
+        self.0.set_position((share * 1000.0) as u64);
+    }
+
+    fn finish(&self) {
+        self.0.finish_and_clear();
+    }
 }
 
 /// What a panorama is, kept while it is used up.

@@ -7,7 +7,7 @@ use crate::cli::terminal::{print, print_json};
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  gonio env info sunset.hdr")]
 pub(in crate::cli) struct Arguments {
-    /// A panorama (EXR, HDR, PNG, JPEG, KTX2, DDS), a folder of six faces, a name with {face} in it, uniform:RADIANCE, or sky:WORDS
+    /// A panorama (EXR, HDR, PNG, JPEG, TIFF, KTX2, DDS), a folder of six faces, a name with {face} in it, uniform:RADIANCE, or sky:WORDS
     environment: String,
     #[command(flatten)]
     reading: PanoramaArguments,

@@ -1,11 +1,11 @@
 //! What `gonio env convert` writes.
 
-use super::Arguments;
+use super::{Arguments, Described};
 use crate::cli::destination;
 use crate::cli::failure::Failure;
 use crate::cli::terminal::warn;
-use gonio_env::{Layout, Panorama};
-use gonio_image::{Channel, ChannelData, FileFormat, Image, Layers, TexelFormat, f16};
+use gonio_env::{Conversion, Kept, Layout, Panorama};
+use gonio_image::{FileFormat, Store, TexelFormat, f16, write_rows};
 use std::path::{Path, PathBuf};
 
 /// Names of separate faces.
@@ -108,34 +108,117 @@ impl Form {
         destination::writable(Path::new(&to.to_string_lossy().replace(FACE, FACES[0])))
     }
 
-    /// Writes the panorama; the files that were written.
-    pub fn write(&self, made: &Panorama, arguments: &Arguments) -> Result<Vec<PathBuf>, Failure> {
+    /// Makes the picture and writes it: row by row where the format lets it.
+    pub fn make(
+        &self,
+        panorama: Panorama,
+        conversion: &Conversion<'_>,
+        arguments: &Arguments,
+    ) -> Result<Made, Failure> {
+        if self.is_texture() {
+            return self.make_texture(panorama, conversion, arguments);
+        }
+        let mut rows = panorama.into_rows(conversion);
+        let [width, height] = rows.size();
         let to = &arguments.to;
-        let texels = arguments.texels.unwrap_or_default();
-        if self.faces {
-            let faces = made
-                .faces()
-                .ok_or_else(|| Failure::input("the picture is no cube"))?;
+        let store = self.store(arguments);
+        let mut above = 0;
+        let files = if self.faces {
             let files = FACES.map(|name| self.file_of(to, name));
             if !to.to_string_lossy().contains(FACE) && !to.is_dir() {
                 std::fs::create_dir(to)
                     .map_err(|e| Failure::io(&to.display().to_string(), "make the folder", &e))?;
             }
-            for (file, face) in files.iter().zip(&faces) {
-                self.write_picture(file, face, arguments)?;
+            for (face, file) in files.iter().enumerate() {
+                write_rows(file, [height, height], store, &mut |first, texels| {
+                    rows.make_face(face, first, texels);
+                    above += cut(store, texels);
+                    Ok(())
+                })?;
             }
-            return Ok(files.to_vec());
-        }
-        if self.is_texture() && self.layout.arrangement().is_some() {
-            let cube = made
-                .cube_map(arguments.mips)
-                .ok_or_else(|| Failure::input("the picture is no cube"))?;
-            warn_of(cube.above(texels), texels);
-            cube.write(to, texels)?;
+            files.to_vec()
         } else {
-            self.write_picture(to, made.image(), arguments)?;
+            write_rows(to, [width, height], store, &mut |first, texels| {
+                rows.make(first, texels);
+                above += cut(store, texels);
+                Ok(())
+            })?;
+            vec![to.clone()]
+        };
+        Ok(Made {
+            written: Described {
+                layout: rows.layout(),
+                convention: rows.convention(),
+                width,
+                height,
+            },
+            kept: rows.kept(),
+            files,
+            above,
+        })
+    }
+
+    fn store(&self, arguments: &Arguments) -> Store {
+        match (self.kind, arguments.texels) {
+            (FileFormat::Png, _) => Store::Png {
+                tonemap: arguments.tonemap,
+                exposure_ev: arguments.exposure,
+                deep: arguments.png16,
+            },
+            (FileFormat::Hdr, _) => Store::Hdr,
+            (_, Some(TexelFormat::Half)) => Store::ExrHalf,
+            _ => Store::ExrFloat,
         }
-        Ok(vec![to.clone()])
+    }
+
+    /// A KTX2 or DDS file, whose picture has to be there whole: a cube stands in it face by face.
+    fn make_texture(
+        &self,
+        panorama: Panorama,
+        conversion: &Conversion<'_>,
+        arguments: &Arguments,
+    ) -> Result<Made, Failure> {
+        let texels = arguments.texels.unwrap_or_default();
+        let (made, kept) = panorama.converted(conversion);
+        let written = Described::of(&made);
+        let files = if self.faces {
+            FACES.map(|name| self.file_of(&arguments.to, name)).to_vec()
+        } else {
+            vec![arguments.to.clone()]
+        };
+        let no_cube = || Failure::input("the picture is no cube");
+        let above = if self.faces {
+            let faces = made.faces().ok_or_else(no_cube)?;
+            drop(made);
+            for (file, face) in files.iter().zip(&faces) {
+                face.write_texture(file, texels)?;
+            }
+            faces.iter().map(|face| texels.above(face)).sum()
+        } else if self.layout.arrangement().is_some() {
+            let cube = made.into_cube_map(arguments.mips).ok_or_else(no_cube)?;
+            cube.write(&arguments.to, texels)?;
+            cube.above(texels)
+        } else {
+            made.image().write_texture(&arguments.to, texels)?;
+            texels.above(made.image())
+        };
+        Ok(Made {
+            written,
+            kept,
+            files,
+            above,
+        })
+    }
+
+    /// What there is to say about samples that are above what was written can hold.
+    pub fn warn_of(&self, above: u64, arguments: &Arguments) {
+        let texels = arguments.texels.unwrap_or_default();
+        if above > 0 {
+            warn(&format!(
+                "{above} sample(s) above {} were cut to it, the largest that {texels} holds: a sun loses light",
+                texels.largest()
+            ));
+        }
     }
 
     fn file_of(&self, to: &Path, name: &str) -> PathBuf {
@@ -146,61 +229,26 @@ impl Form {
             to.join(format!("{name}.exr"))
         }
     }
-
-    fn write_picture(
-        &self,
-        file: &Path,
-        image: &Image,
-        arguments: &Arguments,
-    ) -> Result<(), Failure> {
-        let texels = arguments.texels;
-        match self.kind {
-            FileFormat::Ktx2 | FileFormat::Dds => {
-                let texels = texels.unwrap_or_default();
-                warn_of(texels.above(image), texels);
-                image.write_texture(file, texels)?;
-            }
-            FileFormat::Png if arguments.png16 => {
-                image.write_png16(file, arguments.tonemap, arguments.exposure)?;
-            }
-            FileFormat::Png => image.write_png(file, arguments.tonemap, arguments.exposure)?,
-            FileFormat::Exr if texels == Some(TexelFormat::Half) => {
-                warn_of(TexelFormat::Half.above(image), TexelFormat::Half);
-                halves(image).write_exr(file)?;
-            }
-            _ => image.write(file)?,
-        }
-        if self.kind != FileFormat::Png {
-            // What was written can be read: the bytes on the disk, not those in memory.
-            Image::read(file)?;
-        }
-        Ok(())
-    }
 }
 
-fn warn_of(above: u64, texels: TexelFormat) {
-    if above > 0 {
-        warn(&format!(
-            "{above} sample(s) above {} were cut to it, the largest that {texels} holds: a sun loses light",
-            texels.largest()
-        ));
-    }
+/// What was made.
+pub(super) struct Made {
+    pub written: Described,
+    pub kept: Kept,
+    pub files: Vec<PathBuf>,
+    /// Samples that were cut to what the format holds.
+    pub above: u64,
 }
 
-/// The picture as half floats.
-fn halves(image: &Image) -> Layers {
-    let mut layers = Layers::new(image.width, image.height);
+/// Cuts what half floats can't hold, and counts it.
+fn cut(store: Store, texels: &mut [[f32; 3]]) -> u64 {
     let most = f16::MAX.to_f32();
-    for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
-        let samples = image.pixels.iter();
-        layers.channels.push(Channel {
-            name: name.into(),
-            samples: ChannelData::Half(
-                samples
-                    .map(|p| f16::from_f32(p[c].clamp(-most, most)))
-                    .collect(),
-            ),
-        });
+    let mut above = 0;
+    if store == Store::ExrHalf {
+        for c in texels.iter_mut().flatten() {
+            above += u64::from(*c > most);
+            *c = c.clamp(-most, most);
+        }
     }
-    layers
+    above
 }
