@@ -44,6 +44,14 @@ impl Vectors {
         }
     }
 
+    /// Becomes what `other` is.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.resize(other.count);
+        for (to, from) in self.axes_mut().into_iter().zip(other.axes()) {
+            to.copy_from_slice(from);
+        }
+    }
+
     /// The vector at `i`.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Vec3<f32> {
@@ -106,6 +114,9 @@ mod tests {
         v.store(0, step);
         assert_eq!(v.get(0), Vec3::new(16.0, 1.0, -16.0));
         assert_eq!(v.axes().map(<[f32]>::len), [17; 3]);
+        let mut w = Vectors::default();
+        w.copy_from(&v);
+        assert_eq!((w.len(), w.get(16)), (17, v.get(16)));
         v.resize(3);
         assert_eq!((v.len(), v.axes()[0].len()), (3, 3));
         v.resize(0);

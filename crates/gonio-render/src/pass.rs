@@ -18,7 +18,7 @@ pub(crate) fn take_pass(
     range: std::ops::Range<u32>,
 ) -> RayCounts {
     let rows: Vec<&mut [PixelSums]> = film.rows_mut().collect();
-    let plan = Plan::new(scene, &options.integrator, options.sampler);
+    let plan = Plan::new(scene, &options.integrator);
     let parts: Vec<(RayCounts, Rejected)> = rows
         .into_par_iter()
         .enumerate()
@@ -340,7 +340,7 @@ mod tests {
                 }),
                 ..RenderOptions::default()
             };
-            let plan = Plan::new(&scene, &options.integrator, options.sampler).unwrap();
+            let plan = Plan::new(&scene, &options.integrator).unwrap();
             let mut waves = Row::new(&plan);
             let mut lit = 0;
             for y in 0..options.height {

@@ -131,27 +131,46 @@ impl<const D: usize> Kernel for Draw<'_, D> {
         let (keys, indices) = (&streams.keys[..], &streams.reversed_indices[..]);
         let count = keys.len();
         let mut at = 0;
-        while at < count {
-            let step = (count - at).min(L);
-            let (mut key, mut index) = ([0_u64; L], [0_u32; L]);
-            key[..step].copy_from_slice(&keys[at..at + step]);
-            index[..step].copy_from_slice(&indices[at..at + step]);
-            let mut drawn = [[0.0_f32; L]; D];
-            for lane in 0..L {
-                let numbers = match streams.kind {
-                    SamplerKind::Independent => independent::<D>(key[lane], dimension),
-                    SamplerKind::Sobol => padded::<D>(key[lane], index[lane], dimension),
-                };
-                for d in 0..D {
-                    drawn[d][lane] = numbers[d];
-                }
-            }
+        while at + L <= count {
+            let (mut key, mut index) = ([0; L], [0; L]);
+            key.copy_from_slice(&keys[at..at + L]);
+            index.copy_from_slice(&indices[at..at + L]);
+            let drawn = draw::<L, D>(streams.kind, dimension, &key, &index);
             for d in 0..D {
-                out[d][at..at + step].copy_from_slice(&drawn[d][..step]);
+                out[d][at..at + L].copy_from_slice(&drawn[d]);
             }
             at += L;
         }
+        let left = count - at;
+        let (mut key, mut index) = ([0; L], [0; L]);
+        key[..left].copy_from_slice(&keys[at..]);
+        index[..left].copy_from_slice(&indices[at..]);
+        let drawn = draw::<L, D>(streams.kind, dimension, &key, &index);
+        for d in 0..D {
+            out[d][at..count].copy_from_slice(&drawn[d][..left]);
+        }
     }
+}
+
+/// What the streams of these keys and indices draw.
+#[inline(always)]
+fn draw<const L: usize, const D: usize>(
+    kind: SamplerKind,
+    dimension: u32,
+    key: &[u64; L],
+    index: &[u32; L],
+) -> [[f32; L]; D] {
+    let mut drawn = [[0.0; L]; D];
+    for lane in 0..L {
+        let numbers = match kind {
+            SamplerKind::Independent => independent::<D>(key[lane], dimension),
+            SamplerKind::Sobol => padded::<D>(key[lane], index[lane], dimension),
+        };
+        for d in 0..D {
+            drawn[d][lane] = numbers[d];
+        }
+    }
+    drawn
 }
 
 #[cfg(test)]

@@ -136,24 +136,26 @@ impl<D: Double> Rectangle<D> {
     /// either side of it, and from just off its front the rectangle fills a hemisphere: its back would seem lit by its front.
     #[inline(always)]
     pub fn toward(&self, eye: Vec3<D>, error: D, u: [D::Single; 2]) -> Toward<D> {
-        let normal = self.edge_x.cross(self.edge_y).normalize();
+        let normal = self.edge_x.cross(self.edge_y);
         let height = (eye - self.corner).dot(normal);
-        let seen = self.seen_from(eye);
-        let to = D::of_vector(seen.sample(u));
+        let relative = D::single_vector(self.corner - eye);
+        let (x, y) = (D::single_vector(self.edge_x), D::single_vector(self.edge_y));
+        let seen = SphericalRectangle::new(relative, x, y, Vec3::zero());
+        let to = seen.sample(u);
         let distance = to.length();
-        let some = D::zero().lt(distance) & D::Single::zero().lt(seen.solid_angle());
-        let wi = to / D::select(some, distance, D::one());
+        let zero = D::Single::zero();
+        let some = zero.lt(distance) & zero.lt(seen.solid_angle());
+        let wi = to / D::Single::select(some, distance, D::Single::one());
         // On the rectangle itself, not by roundings beside it.
-        let from_corner = to - (self.corner - eye);
-        let (x, y) = (self.edge_x, self.edge_y);
+        let from_corner = to - relative;
         let s = (from_corner.dot(x) / x.length_squared()).saturate();
         let t = (from_corner.dot(y) / y.length_squared()).saturate();
         Toward {
-            wi,
-            p: self.corner + x * s + y * t,
+            wi: D::of_vector(wi),
+            p: self.corner + self.edge_x * D::of(s) + self.edge_y * D::of(t),
             ng: self.ng,
             pdf: seen.density(),
-            found: some & error.lt(height.abs()),
+            found: some & (error * normal.length()).lt(height.abs()),
         }
     }
 }

@@ -1,9 +1,10 @@
 //! [`Direct`], light that comes straight from the lights to the points of a wave.
 
 use super::surface::{Reflects, Vertices, directions};
-use super::{RayCounts, dimension, power_heuristic};
+use super::{RayCounts, dimension};
 use gonio_brdf::{Brdf, batch};
 use gonio_env::Guide;
+use gonio_num::dispatch::{Kernel, dispatch};
 use gonio_num::{Vectors, vectors::whole_steps};
 use gonio_scene::{LightSamples, Scene};
 
@@ -79,29 +80,18 @@ impl Direct {
                 }
             }
         }
+        dispatch(Reflect {
+            light,
+            wi: &self.wi,
+            f: &mut self.f,
+            pdf: &self.pdf,
+        });
         self.reflected.clear();
         self.ends.clear();
         self.origins.resize(count);
         self.directions.resize(count);
         for i in 0..count {
-            let sampled = light.pdf[i];
-            let f = [0, 1, 2].map(|k| self.f[k][i]);
-            if sampled <= 0.0 || f == [0.0; 3] {
-                continue;
-            }
-            let weight = if light.delta[i] {
-                1.0
-            } else {
-                power_heuristic(sampled, self.pdf[i])
-            };
-            let (cos, factor) = (self.wi.get(i).z.abs(), weight / sampled);
-            if cos == 0.0 {
-                continue;
-            }
-            let mut reflected = [0.0; 3];
-            for k in 0..3 {
-                reflected[k] = f[k] * cos * light.radiance[k][i] * factor;
-            }
+            let reflected = [0, 1, 2].map(|k| self.f[k][i]);
             if reflected == [0.0; 3] {
                 continue;
             }
@@ -127,5 +117,54 @@ impl Direct {
         let seen = |&(_, hidden): &(_, &bool)| !*hidden;
         let all = self.reflected.iter().zip(&self.hidden);
         all.filter(seen).map(|(&(i, light), _)| (i as usize, light))
+    }
+}
+
+/// Turns f into what is reflected of the light sample, with its weight.
+struct Reflect<'a> {
+    light: &'a LightSamples,
+    wi: &'a Vectors,
+    f: &'a mut [Vec<f32>; 3],
+    pdf: &'a [f32],
+}
+
+impl Kernel for Reflect<'_> {
+    type Output = ();
+
+    /// A plain loop over numbers, which a compiler turns into vector instructions by itself.
+    #[inline(always)]
+    fn run<const L: usize>(self) {
+        let [_, _, cos] = self.wi.axes();
+        let count = cos.len();
+        let [r, g, b] = self.f;
+        let (r, g, b) = (&mut r[..count], &mut g[..count], &mut b[..count]);
+        let [lr, lg, lb] = &self.light.radiance;
+        let (lr, lg, lb) = (&lr[..count], &lg[..count], &lb[..count]);
+        let (sampled, delta) = (&self.light.pdf[..count], &self.light.delta[..count]);
+        let pdf = &self.pdf[..count];
+        for i in 0..count {
+            let cos = cos[i].abs();
+            let found = (sampled[i] > 0.0) & (cos > 0.0);
+            let own = if found { sampled[i] } else { 1.0 };
+            let ratio = pdf[i] / own;
+            let heuristic = 1.0 / (1.0 + ratio * ratio);
+            let weight = if delta[i] { 1.0 } else { heuristic };
+            let factor = weight / own;
+            r[i] = if found {
+                r[i] * cos * lr[i] * factor
+            } else {
+                0.0
+            };
+            g[i] = if found {
+                g[i] * cos * lg[i] * factor
+            } else {
+                0.0
+            };
+            b[i] = if found {
+                b[i] * cos * lb[i] * factor
+            } else {
+                0.0
+            };
+        }
     }
 }

@@ -18,7 +18,7 @@ use direct::Direct;
 use gonio_brdf::Model;
 use gonio_env::{EnvSamples, Guide};
 use gonio_num::Vectors;
-use gonio_radiometry::sequence::{SampleStreams, SamplerKind};
+use gonio_radiometry::sequence::SampleStreams;
 use gonio_scene::{Hit, Scene};
 use paths::Paths;
 use scatter::Scatter;
@@ -32,7 +32,6 @@ pub(crate) struct Plan<'a> {
     scene: &'a Scene,
     path: Path,
     guide: Guide,
-    kind: SamplerKind,
     /// For each material its reflection function, if that is the same all over the surface.
     models: Vec<Option<&'a Model<f32, 3>>>,
     /// The bucket of each instance: instances of one material are neighbours.
@@ -49,7 +48,7 @@ const MOST_BUCKETS: usize = 1 << 16;
 impl<'a> Plan<'a> {
     /// Nothing where paths need what waves don't have: surfaces that are partly transparent, bodies that absorb, and the environment
     /// sampled by the surface that it lights.
-    pub fn new(scene: &'a Scene, integrator: &Integrator, kind: SamplerKind) -> Option<Self> {
+    pub fn new(scene: &'a Scene, integrator: &Integrator) -> Option<Self> {
         let Integrator::Path(path) = integrator else {
             return None;
         };
@@ -79,7 +78,6 @@ impl<'a> Plan<'a> {
             scene,
             path: *path,
             guide,
-            kind,
             models: scene.materials.iter().map(|m| m.even_model()).collect(),
             bucket,
             material,
@@ -112,6 +110,8 @@ pub(crate) struct Wavefront<'a> {
     missed: Vec<u32>,
     around: EnvSamples,
     from: Vectors,
+    /// The samples of the paths in `order`.
+    ids: Vec<u32>,
     /// Room for an order to be made in.
     spare: Vec<u32>,
 }
@@ -127,8 +127,8 @@ impl<'a> Wavefront<'a> {
     pub fn new(plan: &'a Plan<'a>) -> Self {
         Self {
             plan,
-            paths: Paths::new(plan.kind),
-            next: Paths::new(plan.kind),
+            paths: Paths::new(),
+            next: Paths::new(),
             hits: Vec::new(),
             order: Vec::new(),
             population: vec![0; plan.material.len()],
@@ -141,6 +141,7 @@ impl<'a> Wavefront<'a> {
             missed: Vec::new(),
             around: EnvSamples::default(),
             from: Vectors::default(),
+            ids: Vec::new(),
             spare: Vec::new(),
         }
     }
@@ -162,7 +163,7 @@ impl<'a> Wavefront<'a> {
             first: None,
         };
         samples.resize(streams.len(), black);
-        self.begin(rays, streams);
+        self.begin(rays);
         for segment in 0..=self.plan.path.max_bounces {
             if self.paths.len() == 0 {
                 break;
@@ -172,7 +173,7 @@ impl<'a> Wavefront<'a> {
                 break;
             }
             if segment > self.plan.path.roulette_after {
-                self.roulette(segment - 1);
+                self.roulette(streams, segment - 1);
             }
             self.sort();
             let rays = [&self.paths.origin, &self.paths.direction];
@@ -183,9 +184,10 @@ impl<'a> Wavefront<'a> {
                     break;
                 }
             }
-            self.vertices
-                .streams
-                .gather(&self.paths.streams, &self.order);
+            self.ids.clear();
+            let ids = self.order.iter().map(|&k| self.paths.id[k as usize]);
+            self.ids.extend(ids);
+            self.vertices.streams.gather(streams, &self.ids);
             self.direct
                 .draw(self.plan.scene, self.plan.guide, &self.vertices, segment);
             self.direct.reflect(self.plan.scene, &self.vertices, counts);
@@ -211,21 +213,22 @@ impl<'a> Wavefront<'a> {
         }
     }
 
-    fn begin(&mut self, rays: [&Vectors; 2], streams: &SampleStreams) {
-        let count = streams.len();
+    fn begin(&mut self, rays: [&Vectors; 2]) {
+        let count = rays[0].len();
         self.emitted.clear();
         self.emitted.resize(count, [0.0; 3]);
         let paths = &mut self.paths;
-        paths.begin(count);
-        paths.id.extend(0..count as u32);
-        paths.streams.clone_from(streams);
-        paths.origin.clone_from(rays[0]);
-        paths.direction.clone_from(rays[1]);
-        for column in &mut paths.throughput {
-            column.resize(count, 1.0);
+        paths.begin(count, false);
+        for (i, id) in paths.id.iter_mut().enumerate() {
+            *id = i as u32;
         }
-        paths.pdf.resize(count, f32::INFINITY);
-        paths.end();
+        paths.origin.copy_from(rays[0]);
+        paths.direction.copy_from(rays[1]);
+        for column in &mut paths.throughput {
+            column.fill(1.0);
+        }
+        paths.pdf.fill(f32::INFINITY);
+        paths.end(count);
     }
 
     /// Follows all rays to what they meet, and takes in the light that comes from there. Afterwards `order` has the paths that met a
@@ -291,11 +294,12 @@ impl<'a> Wavefront<'a> {
     }
 
     /// Ends paths that carry little, and lets the others carry their share; as `path.rs` does after reflection `bounce`.
-    fn roulette(&mut self, bounce: u32) {
+    fn roulette(&mut self, streams: &SampleStreams, bounce: u32) {
         let paths = &mut self.paths;
         self.survival.resize(paths.len(), 0.0);
         let at = dimension::of_bounce(bounce) + dimension::ROULETTE;
-        paths.streams.draw(at, [&mut self.survival]);
+        self.vertices.streams.gather(streams, &paths.id);
+        self.vertices.streams.draw(at, [&mut self.survival]);
         self.order.retain(|&k| {
             let k = k as usize;
             let [r, g, b] = product(paths.throughput(k), paths.unscaling(k));

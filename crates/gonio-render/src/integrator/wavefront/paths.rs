@@ -1,7 +1,6 @@
 //! [`Paths`], the paths of a wave between two surfaces.
 
 use gonio_num::Vectors;
-use gonio_radiometry::sequence::{SampleStreams, SamplerKind};
 use gonio_scene::Ray;
 
 /// Paths on their way, as a structure of arrays.
@@ -9,7 +8,6 @@ use gonio_scene::Ray;
 pub(super) struct Paths {
     /// Which sample of the wave each belongs to.
     pub id: Vec<u32>,
-    pub streams: SampleStreams,
     pub origin: Vectors,
     pub direction: Vectors,
     pub throughput: [Vec<f32>; 3],
@@ -22,10 +20,9 @@ pub(super) struct Paths {
 }
 
 impl Paths {
-    pub fn new(kind: SamplerKind) -> Self {
+    pub fn new() -> Self {
         Self {
             id: Vec::new(),
-            streams: SampleStreams::new(kind),
             origin: Vectors::default(),
             direction: Vectors::default(),
             throughput: [const { Vec::new() }; 3],
@@ -40,21 +37,25 @@ impl Paths {
     }
 
     /// Makes room for up to `most` paths, of which there are none yet.
-    pub fn begin(&mut self, most: usize) {
-        self.id.clear();
-        self.streams.clear();
+    ///
+    /// - `unscales`: whether there is an unscaling
+    pub fn begin(&mut self, most: usize, unscales: bool) {
         for v in [&mut self.origin, &mut self.direction, &mut self.from] {
             v.resize(most);
         }
-        for column in self.throughput.iter_mut().chain(&mut self.unscaling) {
-            column.clear();
+        // Nothing of what was there needs to be written again.
+        self.id.resize(most, 0);
+        for column in self.throughput.iter_mut().chain([&mut self.pdf]) {
+            column.resize(most, 0.0);
         }
-        self.pdf.clear();
+        for column in &mut self.unscaling {
+            column.resize(if unscales { most } else { 0 }, 0.0);
+        }
     }
 
-    /// Ends what [`Paths::begin`] began.
-    pub fn end(&mut self) {
-        let count = self.len();
+    /// Ends what [`Paths::begin`] began, with `count` paths.
+    pub fn end(&mut self, count: usize) {
+        self.id.truncate(count);
         for v in [&mut self.origin, &mut self.direction, &mut self.from] {
             v.resize(count);
         }

@@ -74,7 +74,8 @@ impl Scatter {
         next: &mut Paths,
     ) {
         let unscales = unscales || !paths.unscaling[0].is_empty();
-        next.begin(order.len());
+        next.begin(order.len(), unscales);
+        let mut place = 0;
         for (group, reflects) in vertices.each_group() {
             let even = match &reflects {
                 Reflects::Evenly(model) => Some((model.transmits(), model.relative_ior())),
@@ -111,7 +112,6 @@ impl Scatter {
                 if throughput == [0.0; 3] {
                     continue;
                 }
-                let place = next.len();
                 if unscales {
                     let mut unscaling = paths.unscaling(k);
                     if transmits && !same_side {
@@ -120,25 +120,25 @@ impl Scatter {
                         }
                     }
                     for (column, value) in next.unscaling.iter_mut().zip(unscaling) {
-                        column.push(value);
+                        column[place] = value;
                     }
                 }
-                next.id.push(paths.id[k]);
-                next.streams.push_from(&paths.streams, k);
+                next.id[place] = paths.id[k];
                 next.origin
                     .set(place, vertices.surfaces.offset_origin(i, wi));
                 next.direction.set(place, wi);
                 next.from.set(place, vertices.surfaces.p.get(i));
                 for (column, value) in next.throughput.iter_mut().zip(throughput) {
-                    column.push(value);
+                    column[place] = value;
                 }
-                next.pdf.push(if self.delta[i] {
+                next.pdf[place] = if self.delta[i] {
                     f32::INFINITY
                 } else {
                     self.pdf[i]
-                });
+                };
+                place += 1;
             }
         }
-        next.end();
+        next.end(place);
     }
 }
