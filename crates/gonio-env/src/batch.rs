@@ -1,5 +1,8 @@
 //! [`EnvSamples`], directions towards an environment and what comes from there, many at a time.
 
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
 use crate::environment::{Picture, Source};
 use crate::sampling::{Guide, SphereTable};
 use crate::{Environment, Layout};

@@ -3,6 +3,9 @@
 //! The running integral of an interpolated row is the interpolation of its neighbours' running integrals, so one such table a node
 //! row is all that is stored.
 
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
 use super::nodes::{Band, Nodes, U_MAX, U_MIN, sample_linear};
 use gonio_num::lanes::Lanes;
 use gonio_num::{DoubleLanes, Real, Vec3};

@@ -1,5 +1,8 @@
 //! [`Surfaces`], what is known of many surface points, as structures of arrays.
 
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
 use super::placed::{Kind, Placed};
 use super::surface::{axes, normal_part, offset_origin, on_triangle, ray_to};
 use super::{Geometry, Hit, Ray, Shape, SurfacePoint};

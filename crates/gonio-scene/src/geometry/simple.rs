@@ -1,5 +1,8 @@
 //! Ray queries of many rays at once, in scenes of so few shapes that no tree is worth its walk: each shape is tested with all rays.
 
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
 use super::nearest::Nearest;
 use super::placed::{Kind, Placed};
 use super::shape::{Met, cross_flat, cross_sphere};
@@ -173,7 +176,7 @@ fn to_object(m: &Affine3<f64>, rays: &[[&[f32]; 3]; 2], i: usize) -> [Vec3<f64>;
 
 /// The rays, each axis as a slice of `count`, which a compiler then knows.
 #[inline(always)]
-fn cut<'a>(rays: [[&'a [f32]; 3]; 2], count: usize) -> [[&'a [f32]; 3]; 2] {
+fn cut(rays: [[&[f32]; 3]; 2], count: usize) -> [[&[f32]; 3]; 2] {
     let [[ox, oy, oz], [dx, dy, dz]] = rays;
     [
         [&ox[..count], &oy[..count], &oz[..count]],

@@ -1,5 +1,8 @@
 //! [`LightSamples`], directions to lights from many points.
 
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
 use super::emitter::{Form, Rectangle, Sphere, Toward};
 use super::{Light, LightTarget, Lights};
 use crate::Surfaces;

@@ -1,5 +1,8 @@
 //! [`Direct`], light that comes straight from the lights to the points of a wave.
 
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
 use super::surface::{Reflects, Vertices, directions};
 use super::{RayCounts, dimension};
 use gonio_brdf::{Brdf, batch};
