@@ -54,6 +54,14 @@ DIFFUSE = {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.6, 0.25
 GOLD = {"type": "roughconductor", "material": "Au", "distribution": "ggx", "alpha": 0.15}
 
 
+def scenes_of(folder):
+    """The module `scenes.py` of a folder."""
+    spec = importlib.util.spec_from_file_location("peer_scenes", folder.resolve() / "scenes.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
 def scene_named(module, name):
     """The scene dictionary: `mesh-gold` is the scene `mesh` with gold for what is replaced."""
     base, _, depth = name.partition("@")
@@ -177,11 +185,7 @@ def main():
     parser.add_argument("--sampler", default="independent")
     args = parser.parse_args()
     args.work.mkdir(parents=True, exist_ok=True)
-    module = None
-    if args.peers:
-        spec = importlib.util.spec_from_file_location("peer_scenes", args.peers.resolve() / "scenes.py")
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
+    module = scenes_of(args.peers) if args.peers else None
     print(f"{'scene':16s} {'gonio':>9s} {'mitsuba':>9s} {'sigma':>7s} {'difference':>11s} {'pixels':>8s} {'blocks':>7s} {'rms':>6s}   spp/s of gonio, mitsuba [thousands]")
     passed = True
     for name in args.scenes:
