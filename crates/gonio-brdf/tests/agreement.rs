@@ -6,7 +6,7 @@
 
 mod common;
 
-use gonio_brdf::batch::{Directions, Samples, eval_on, pdf_on, sample_on};
+use gonio_brdf::batch::{Directions, Samples, eval_and_pdf_on, eval_on, pdf_on, sample_on};
 use gonio_brdf::record::{record_eval, record_pdf, record_sample};
 use gonio_brdf::{Brdf, Model};
 use gonio_num::Vec3;
@@ -80,6 +80,16 @@ fn lanes_have_the_bits_of_single_calls() {
             eval_on(set, &model, view(&inputs.wi), view(&inputs.wo), [r, g, b]);
             let mut pdf = vec![0.0; COUNT];
             pdf_on(set, &model, view(&inputs.wi), view(&inputs.wo), &mut pdf);
+            let mut both = vec![vec![0.0f32; COUNT]; 4];
+            let [r, g, b, density] = both.as_mut_slice() else {
+                unreachable!()
+            };
+            let (wi, wo) = (view(&inputs.wi), view(&inputs.wo));
+            eval_and_pdf_on(set, &model, wi, wo, [r, g, b], density);
+            for (together, alone) in both.iter().zip(f.iter().chain([&pdf])) {
+                let bits = |v: &[f32]| v.iter().map(|x| x.to_bits()).collect::<Vec<u32>>();
+                assert_eq!(bits(together), bits(alone), "{spec} {set:?}");
+            }
             let mut drawn = vec![vec![0.0f32; COUNT]; 7];
             let mut delta = vec![false; COUNT];
             let [x, y, z, wr, wg, wb, density] = drawn.as_mut_slice() else {
