@@ -1,6 +1,6 @@
 //! [`capture`], the whole way: photographs in, an environment with what is known about it out.
 
-use crate::ball::Projection;
+use crate::align::align;
 use crate::blend::{self, View};
 use crate::explain::Explain;
 use crate::outline::{self, Lens, Outline};
@@ -10,9 +10,9 @@ use crate::register::{self, Registration};
 use crate::response::{Response, ResponseChoice};
 use crate::restore::{self, Restored};
 use crate::{BallMaterial, CaptureError, Radiance, Rotation, fill};
-use gonio_image::{ChannelData, Image, ImageError, Layers};
+use gonio_image::Image;
 use std::fmt::Display;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What clipped light is restored from.
 #[derive(Debug, Clone)]
@@ -99,7 +99,7 @@ pub struct Capture {
     pub filled: usize,
     /// Choices that were made for the user, to be told.
     pub notes: Vec<String>,
-    metadata: Vec<(String, String)>,
+    pub(crate) metadata: Vec<(String, String)>,
 }
 
 /// Makes an environment of photographs of a mirrored ball. `progress` is told each step and how far the whole is, 0 to 1.
@@ -118,6 +118,10 @@ pub fn capture(
     let mut explain = Explain::into_folder(options.explain.as_deref())?;
     let each = photos.len() / options.views;
     let exposures = exposures(photos, options, each)?;
+    let lens = lens(&photos[0], options.lens, &mut notes);
+    progress("aligning exposures", 0.0);
+    let moved = aligned(photos, &exposures, lens, options, &mut notes)?;
+    let photos = moved.as_deref().unwrap_or(photos);
     progress("response curve", 0.05);
     let response = response(
         &photos[..each],
@@ -127,7 +131,6 @@ pub fn capture(
     )?;
     explain.response(&response)?;
 
-    let lens = lens(&photos[0], options.lens, &mut notes);
     let mut found: Vec<(Radiance, Outline, &str)> = Vec::new();
     for v in 0..options.views {
         let step = |part: f64| 0.1 + 0.5 * (v as f64 + part) / options.views as f64;
@@ -182,8 +185,14 @@ pub fn capture(
         })
         .collect();
     for (v, view) in views.iter().enumerate() {
-        explain.panorama(&format!("view{}-panorama", v + 1), &view.panorama.image)?;
-        explain.confidence(&format!("view{}-confidence", v + 1), &view.panorama)?;
+        let (name, what) = (format!("view{}", v + 1), format!("viewpoint {}", v + 1));
+        let picture = &view.panorama.image;
+        explain.panorama(
+            &format!("{name}-panorama"),
+            &format!("What {what} saw"),
+            picture,
+        )?;
+        explain.confidence(&format!("{name}-confidence"), &what, &view.panorama)?;
     }
     progress("merging the views", 0.85);
     let before: Vec<Panorama> = if options.explain.is_some() && views.len() > 1 {
@@ -198,11 +207,11 @@ pub fn capture(
                 *value *= gain as f32;
             }
         }
-        explain.difference(&format!("view{}-difference", v + 1), &before[0], &p)?;
+        explain.difference(v + 1, &before[0], &p)?;
     }
     let mut panorama = merged.panorama;
-    explain.panorama("merged", &panorama.image)?;
-    explain.confidence("confidence", &panorama)?;
+    explain.panorama("merged", "All viewpoints merged", &panorama.image)?;
+    explain.confidence("confidence", "the merged panorama", &panorama)?;
 
     let mut filled = 0;
     // Irradiance misses what a black hole would have given: clipped light is restored with the holes filled.
@@ -229,7 +238,7 @@ pub fn capture(
             found
         }
     };
-    explain.panorama("panorama", &panorama.image)?;
+    explain.panorama("panorama", "What is written", &panorama.image)?;
     progress("done", 1.0);
 
     let views = found
@@ -296,6 +305,61 @@ fn check(photos: &[Photo], options: &Options) -> Result<(), CaptureError> {
         return Err(wrong("illuminance", &lux, "a positive number of lux"));
     }
     Ok(())
+}
+
+/// The photographs with the exposures of each view over each other, if any had to be moved; what was done is noted.
+fn aligned(
+    photos: &[Photo],
+    exposures: &[f64],
+    lens: Lens,
+    options: &Options,
+    notes: &mut Vec<String>,
+) -> Result<Option<Vec<Photo>>, CaptureError> {
+    let each = photos.len() / options.views;
+    if each < 2 {
+        return Ok(None);
+    }
+    let mut all = Vec::with_capacity(photos.len());
+    let mut any = false;
+    for (v, (view, exposures)) in photos.chunks(each).zip(exposures.chunks(each)).enumerate() {
+        let circle = match options.balls.get(v) {
+            Some(circle) => Some(*circle),
+            None => ball_of_one(view, lens)?,
+        };
+        let found = align(view, exposures, circle)?;
+        for (photo, shift) in view.iter().zip(&found.shifts) {
+            let reference = &view[found.reference].name;
+            match shift {
+                Some([0, 0]) => {}
+                Some([x, y]) => notes.push(format!(
+                    "{}: {x} pixels to the right and {y} down of {reference}: moved back",
+                    photo.name
+                )),
+                None => notes.push(format!(
+                    "{}: too dark, too bright or too even to tell whether it is aligned with the others",
+                    photo.name
+                )),
+            }
+        }
+        any |= found.photos.is_some();
+        all.extend(found.photos.unwrap_or_else(|| view.to_vec()));
+    }
+    Ok(any.then_some(all))
+}
+
+/// The ball in the best of several exposures, taken as sRGB: a curve that increases leaves edges where they are.
+fn ball_of_one(view: &[Photo], lens: Lens) -> Result<Option<[f64; 3]>, CaptureError> {
+    let one = &view[crate::align::best_exposed(view)];
+    let radiance = Radiance::merge(std::slice::from_ref(one), &[1.0], &Response::srgb())?;
+    match outline::find(&radiance.image, lens, &one.name) {
+        Ok(found) => {
+            let [x, y] = found.ball.centre();
+            Ok(Some([x, y, found.ball.radius()]))
+        }
+        // The merged exposures may show it yet.
+        Err(CaptureError::NoBall { .. }) => Ok(None),
+        Err(e) => Err(e),
+    }
 }
 
 /// The exposure of each photograph.
@@ -445,107 +509,5 @@ fn restore(
             };
             restore::by_grey_ball(image, clipped, &radiance, &ball).map(Some)
         }
-    }
-}
-
-impl Capture {
-    /// What was found out, as names and values.
-    pub fn metadata(&self) -> &[(String, String)] {
-        &self.metadata
-    }
-
-    fn describe(&self, options: &Options) -> Vec<(String, String)> {
-        let mut all: Vec<(String, String)> = Vec::new();
-        let mut put = |name: String, value: String| all.push((name, value));
-        put("layout".into(), "lat-long".into());
-        put(
-            "capture.response".into(),
-            self.response.origin().to_string(),
-        );
-        put("capture.ball-material".into(), options.material.to_string());
-        for (v, view) in self.views.iter().enumerate() {
-            let name = |what: &str| format!("capture.view{}.{what}", v + 1);
-            let ball = &view.outline.ball;
-            let [x, y] = ball.centre();
-            put(name("photo"), view.name.clone());
-            put(name("ball"), format!("{x:.3},{y:.3},{:.3}", ball.radius()));
-            put(name("outline-rms-px"), format!("{:.3}", view.outline.rms));
-            put(
-                name("outline-coverage"),
-                format!("{:.3}", view.outline.coverage),
-            );
-            match ball.projection() {
-                Projection::Orthographic => put(name("projection"), "orthographic".into()),
-                Projection::Perspective { focal, .. } => {
-                    put(name("focal-length-px"), format!("{focal:.2}"));
-                    put(name("distance-radii"), format!("{:.4}", ball.distance()));
-                }
-            }
-            if let Some(r) = view.registration {
-                let [yaw, pitch, roll] = r.rotation.angles().map(f64::to_degrees);
-                put(
-                    name("yaw-pitch-roll-deg"),
-                    format!("{yaw:.4},{pitch:.4},{roll:.4}"),
-                );
-                put(name("correlation"), format!("{:.4}", r.correlation));
-                let [r, g, b] = view.gain;
-                put(name("gain"), format!("{r:.5},{g:.5},{b:.5}"));
-            }
-        }
-        if let Some(r) = &self.restored {
-            let d = r.direction;
-            put(
-                "capture.restored.radiance".into(),
-                format!("{:?}", r.radiance),
-            );
-            put(
-                "capture.restored.direction".into(),
-                format!("{:.5},{:.5},{:.5}", d.x, d.y, d.z),
-            );
-            put(
-                "capture.restored.solid-angle-sr".into(),
-                format!("{:.6}", r.solid_angle),
-            );
-        }
-        if matches!(options.known_light, Some(KnownLight::Lux(_))) {
-            put("luminance-unit".into(), "cd m-2".into());
-        }
-        put("capture.filled-texels".into(), self.filled.to_string());
-        all
-    }
-
-    /// The layers of an EXR: R, G, B; `confidence.Y`; `uncertainty.Y`, the luminance's standard deviation; `clipped.Y`.
-    ///
-    /// # Errors
-    /// None in practice: the layers are of one size and have different names.
-    pub fn layers(&self) -> Result<Layers, ImageError> {
-        let p = &self.panorama;
-        let mut layers = Layers::from_image(&p.image);
-        let uncertainty = p
-            .image
-            .pixels
-            .iter()
-            .zip(&p.sigma)
-            .map(|(p, s)| s * (0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]))
-            .collect();
-        for (name, samples) in [
-            ("confidence.Y", p.confidence.clone()),
-            ("uncertainty.Y", uncertainty),
-            ("clipped.Y", p.clipped.clone()),
-        ] {
-            layers.push(name, ChannelData::Float(samples))?;
-        }
-        for (name, value) in &self.metadata {
-            layers.set_metadata(name, value);
-        }
-        Ok(layers)
-    }
-
-    /// Writes [`Capture::layers`].
-    ///
-    /// # Errors
-    /// [`CaptureError::Image`] with nothing half-written.
-    pub fn write(&self, path: &Path) -> Result<(), CaptureError> {
-        Ok(self.layers()?.write_exr(path)?)
     }
 }

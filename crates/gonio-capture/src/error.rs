@@ -14,6 +14,9 @@ pub enum CaptureError {
     /// The captured panorama can't be an environment.
     #[error(transparent)]
     Environment(#[from] gonio_env::EnvError),
+    /// A picture that explains a step could not be drawn.
+    #[error(transparent)]
+    Plot(#[from] gonio_plot::PlotError),
     /// The photograph is a camera's raw file.
     #[error("{}: a camera's raw file, which is not read", file.display())]
     CameraRaw {
@@ -53,6 +56,23 @@ pub enum CaptureError {
         other: String,
         /// The other's size.
         expected: String,
+    },
+    /// Photographs of one view that don't show the same.
+    #[error(
+        "{file} doesn't show what {other} shows: at the best shift {:.0} % of the pixels are dark in one and bright in the other, expected at \
+         most {:.0} %",
+        100.0 * found,
+        100.0 * most
+    )]
+    NotAligned {
+        /// The file.
+        file: String,
+        /// The photograph it is compared with.
+        other: String,
+        /// Share of the pixels that differ.
+        found: f64,
+        /// The largest share.
+        most: f64,
     },
     /// The response curve can't be found.
     #[error("the camera's response can't be found: {reason}")]
@@ -126,7 +146,7 @@ impl CaptureError {
     pub fn help(&self) -> Option<&'static str> {
         match self {
             Self::Image(_) | Self::Parameter { .. } => None,
-            Self::Environment(_) => None,
+            Self::Environment(_) | Self::Plot(_) => None,
             Self::CameraRaw { .. } => Some(
                 "develop it without a tone curve to a 16-bit TIFF (dcraw -4 -T, or RawTherapee's neutral profile) and pass --linear",
             ),
@@ -138,6 +158,9 @@ impl CaptureError {
             ),
             Self::Size { .. } => Some(
                 "pass the exposures of each view as the camera made them, uncropped; several viewpoints are --views N",
+            ),
+            Self::NotAligned { .. } => Some(
+                "exposures of one view need one place of the camera, and nothing that moves; several viewpoints are --views N",
             ),
             Self::Response { .. } => {
                 Some("name the curve: --response srgb, or --linear for linear data")

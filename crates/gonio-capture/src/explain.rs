@@ -3,23 +3,21 @@
 use crate::outline::Outline;
 use crate::response::Response;
 use crate::{CaptureError, Panorama, Radiance};
-use gonio_image::Image;
 use gonio_image::tonemap::ToneMap;
+use gonio_image::{Image, write_file};
 use gonio_num::Real;
+use gonio_plot::{Axes, Line, ScaleKind, lines};
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 /// Longer side \[pixels] of a picture.
 const LARGEST: usize = 1400;
-const PAPER: [f32; 3] = [0.96, 0.96, 0.96];
-const GRID: [f32; 3] = [0.72, 0.72, 0.72];
-const INKS: [[f32; 3]; 3] = [[0.75, 0.03, 0.02], [0.01, 0.35, 0.03], [0.02, 0.08, 0.7]];
-
-/// Writes numbered pictures into a folder; or nothing.
+/// Writes numbered pictures into a folder, and `steps.txt`, which says what each shows; or nothing.
 #[derive(Debug)]
 pub struct Explain {
     folder: Option<PathBuf>,
     count: usize,
+    captions: String,
 }
 
 impl Explain {
@@ -38,46 +36,71 @@ impl Explain {
         Ok(Self {
             folder: folder.map(Path::to_owned),
             count: 0,
+            captions: String::from("The steps of gonio env capture, picture by picture.\n"),
         })
     }
 
-    fn write(&mut self, name: &str, draw: impl FnOnce() -> Image) -> Result<(), CaptureError> {
+    /// The path of the next picture, whose caption is written; `None` if nothing is explained.
+    fn next(&mut self, name: &str, caption: &str) -> Result<Option<PathBuf>, CaptureError> {
         self.count += 1;
-        if let Some(folder) = &self.folder {
-            let path = folder.join(format!("{:02}-{name}.png", self.count));
+        let Some(folder) = &self.folder else {
+            return Ok(None);
+        };
+        let file = format!("{:02}-{name}.png", self.count);
+        self.captions += &format!("\n{file}\n  {}\n", caption.replace('\n', "\n  "));
+        // After each picture: an error in the next step leaves the ones before explained.
+        write_file(&folder.join("steps.txt"), self.captions.as_bytes())?;
+        Ok(Some(folder.join(file)))
+    }
+
+    fn write(
+        &mut self,
+        name: &str,
+        caption: &str,
+        draw: impl FnOnce() -> Image,
+    ) -> Result<(), CaptureError> {
+        if let Some(path) = self.next(name, caption)? {
             draw().write_png(&path, ToneMap::Linear, 0.0)?;
         }
         Ok(())
     }
 
-    /// The response curve: codes to the right, the logarithm of the exposure upwards, five decades.
+    /// The response curve: codes to the right, the exposure that makes them upwards, and sRGB's curve to compare with.
     pub(crate) fn response(&mut self, response: &Response) -> Result<(), CaptureError> {
-        self.write("response", || {
-            const DECADES: f64 = 5.0;
-            let (w, h) = (640, 480);
-            let mut canvas = Image::filled(w, h, PAPER);
-            for k in 0..=5 {
-                let y = k as f64 / 5.0 * (h - 1) as f64;
-                line(&mut canvas, [0.0, y], [w as f64, y], GRID);
-                let x = k as f64 / 5.0 * (w - 1) as f64;
-                line(&mut canvas, [x, 0.0], [x, h as f64], GRID);
-            }
-            for (c, ink) in INKS.iter().enumerate() {
-                let channel = response.channel(c);
-                let top = Real::ln(channel[255]);
-                let at = |z: usize| {
-                    let down = (top - Real::ln(channel[z].max(1e-12))) / std::f64::consts::LN_10;
-                    [
-                        z as f64 / 255.0 * (w - 1) as f64,
-                        down / DECADES * (h - 1) as f64,
-                    ]
-                };
-                for z in 1..256 {
-                    line(&mut canvas, at(z - 1), at(z), *ink);
-                }
-            }
-            canvas
-        })
+        let caption = format!(
+            "The camera's response ({}): which exposure of the sensor makes a code, relative to what makes code 255 in the curve of sRGB, \
+             for red, green and blue. Steep parts are noisy; codes above 235 count less and less, above 250 nothing.",
+            response.origin()
+        );
+        let Some(path) = self.next("response", &caption)? else {
+            return Ok(());
+        };
+        let reference = Response::srgb();
+        let line = |name: &str, channel: &[f64]| Line {
+            name: name.into(),
+            points: (1..256).map(|z| [z as f64, channel[z]]).collect(),
+        };
+        let mut all: Vec<Line> = ["red", "green", "blue"]
+            .iter()
+            .enumerate()
+            .map(|(c, name)| line(name, response.channel(c)))
+            .collect();
+        all.push(line("sRGB, to compare", reference.channel(1)));
+        let axes = Axes {
+            subtitle: &format!("{}: the exposure that makes a code", response.origin()),
+            x: "code in the photograph, 1 to 255",
+            x_ends: [0.0, 255.0],
+            x_step: 15.0,
+            y: "exposure, relative",
+            channels: true,
+        };
+        let options = gonio_plot::Options {
+            title: Some("Response of the camera".into()),
+            scale: ScaleKind::Log,
+            ..gonio_plot::Options::default()
+        };
+        let png = lines(&all, &axes, &options)?.png(1.5)?;
+        Ok(write_file(&path, &png)?)
     }
 
     /// The merged photograph; what is clipped in magenta.
@@ -86,7 +109,11 @@ impl Explain {
         view: usize,
         radiance: &Radiance,
     ) -> Result<(), CaptureError> {
-        self.write(&format!("view{view}-radiance"), || {
+        let caption = format!(
+            "Viewpoint {view}: its exposures merged to radiance, brightened for the eye. Magenta: clipped in every exposure, {:.2} % of the picture.",
+            100.0 * share(&radiance.clipped)
+        );
+        self.write(&format!("view{view}-radiance"), &caption, || {
             let (mut shown, k) = developed(&radiance.image);
             for y in 0..shown.height {
                 for x in 0..shown.width {
@@ -106,7 +133,20 @@ impl Explain {
         photo: &Image,
         outline: &Outline,
     ) -> Result<(), CaptureError> {
-        self.write(&format!("view{view}-outline"), || {
+        let [x, y] = outline.ball.centre();
+        let distance = outline.ball.distance();
+        let caption = format!(
+            "Viewpoint {view}: the ball at {x:.1}, {y:.1} with a radius of {:.1} pixels, {}. Yellow: its outline and the place of its centre. Dots: \
+             the edges that determined it, {:.2} pixels off (RMS); red dots were left out as outliers. An outline beside the rim bends all directions.",
+            outline.ball.radius(),
+            if distance.is_finite() {
+                format!("the camera {distance:.2} radii away")
+            } else {
+                "the camera taken as infinitely far away".into()
+            },
+            outline.rms
+        );
+        self.write(&format!("view{view}-outline"), &caption, || {
             let (mut shown, k) = developed(photo);
             let at = |p: [f64; 2]| p.map(|c| c / k as f64);
             let ring: Vec<[f64; 2]> = (0..=720)
@@ -141,13 +181,30 @@ impl Explain {
     }
 
     /// A panorama.
-    pub(crate) fn panorama(&mut self, name: &str, image: &Image) -> Result<(), CaptureError> {
-        self.write(name, || developed(image).0)
+    pub(crate) fn panorama(
+        &mut self,
+        name: &str,
+        what: &str,
+        image: &Image,
+    ) -> Result<(), CaptureError> {
+        let caption = format!(
+            "{what}, as a panorama: its left and right edge look towards the first camera, its centre away from it, its top up."
+        );
+        self.write(name, &caption, || developed(image).0)
     }
 
     /// Confidence in grey, and what is clipped in magenta.
-    pub(crate) fn confidence(&mut self, name: &str, p: &Panorama) -> Result<(), CaptureError> {
-        self.write(name, || {
+    pub(crate) fn confidence(
+        &mut self,
+        name: &str,
+        what: &str,
+        p: &Panorama,
+    ) -> Result<(), CaptureError> {
+        let caption = format!(
+            "How sure {what} is. White: a texel has a pixel of the photograph or more; grey: less, near the ball's rim; black: nobody saw it, or \
+             the camera stands there. Magenta: clipped in every exposure."
+        );
+        self.write(name, &caption, || {
             let mut image = p.image.clone();
             for ((pixel, sure), clipped) in
                 image.pixels.iter_mut().zip(&p.confidence).zip(&p.clipped)
@@ -166,11 +223,16 @@ impl Explain {
     /// full at a factor of 2; black where one saw nothing.
     pub(crate) fn difference(
         &mut self,
-        name: &str,
+        view: usize,
         a: &Panorama,
         b: &Panorama,
     ) -> Result<(), CaptureError> {
-        self.write(name, || {
+        let caption = format!(
+            "Viewpoint {view} against the first, turned and matched in colour. Grey: they agree; red: viewpoint {view} is brighter; blue: darker; full \
+             colour at a factor of 2; black: one saw nothing. Cameras and photographers show, and what is near to the ball; doubled \
+             edges everywhere mean a wrong outline or rotation."
+        );
+        self.write(&format!("view{view}-difference"), &caption, || {
             let mut image = a.image.clone();
             for (k, pixel) in image.pixels.iter_mut().enumerate() {
                 let (p, q) = (a.image.pixels[k][1], b.image.pixels[k][1]);
@@ -185,6 +247,10 @@ impl Explain {
             shrunk(&image).0
         })
     }
+}
+
+fn share(marks: &[bool]) -> f64 {
+    marks.iter().filter(|m| **m).count() as f64 / marks.len().max(1) as f64
 }
 
 /// Smaller by a whole factor, which is returned too.

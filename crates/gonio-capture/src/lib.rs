@@ -3,6 +3,7 @@
 //! | step | module |
 //! |---|---|
 //! | a photograph and its EXIF | [`Photo`] |
+//! | exposures over each other | [`mod@align`] |
 //! | codes to exposure | [`response`] |
 //! | exposures to radiance, with uncertainty | [`Radiance`] |
 //! | the ball's outline | [`outline`] |
@@ -16,6 +17,7 @@
 //! | all of it | [`fn@capture`] |
 //! | photographs that were never taken, as evidence | [`simulate`] |
 
+pub mod align;
 pub mod ball;
 pub mod blend;
 mod capture;
@@ -23,6 +25,7 @@ mod error;
 mod explain;
 pub mod fill;
 pub mod outline;
+mod output;
 pub mod panorama;
 mod photo;
 mod radiance;

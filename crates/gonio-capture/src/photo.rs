@@ -56,7 +56,7 @@ impl Exif {
 }
 
 /// A photograph as its file holds it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Photo {
     /// The file's name, for messages.
     pub name: String,
@@ -140,6 +140,20 @@ impl Photo {
             RawData::F32(d) => d[i],
         };
         [r, g, b]
+    }
+
+    /// Whether exposures of one view are of one size.
+    pub(crate) fn check_sizes(photos: &[Self]) -> Result<(), CaptureError> {
+        let first = &photos[0];
+        match photos.iter().find(|p| p.size_text() != first.size_text()) {
+            None => Ok(()),
+            Some(other) => Err(CaptureError::Size {
+                file: other.name.clone(),
+                found: other.size_text(),
+                other: first.name.clone(),
+                expected: first.size_text(),
+            }),
+        }
     }
 
     pub(crate) fn size_text(&self) -> String {

@@ -48,17 +48,8 @@ impl Radiance {
         exposures: &[f64],
         response: &Response,
     ) -> Result<Self, CaptureError> {
+        Photo::check_sizes(photos)?;
         let first = &photos[0];
-        for p in &photos[1..] {
-            if p.size_text() != first.size_text() {
-                return Err(CaptureError::Size {
-                    file: p.name.clone(),
-                    found: p.size_text(),
-                    other: first.name.clone(),
-                    expected: first.size_text(),
-                });
-            }
-        }
         let (width, height) = (first.picture.width, first.picture.height);
         let noise: Vec<Noise> = photos.iter().map(measure_noise).collect();
         let merged: Vec<([f32; 3], f32, bool)> = (0..width * height)

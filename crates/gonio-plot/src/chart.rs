@@ -4,7 +4,7 @@ use crate::canvas::{
     Canvas, FAINT, GRID, INK, LABEL, MUTED, SMALL, Stroke, done, style, text_style, unit,
 };
 use crate::figure::Place;
-use crate::scale::Scale;
+use crate::scale::{Scale, number};
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::prelude::ChartBuilder;
 
@@ -55,6 +55,33 @@ pub(crate) fn degrees(
 ) -> Place {
     let (x, y) = (Axis::of_steps(x), Axis::of_steps(y));
     draw(canvas, place, (x, x_words), (y, y_words), false)
+}
+
+/// As [`axes`], with numbers along the first: its ends, the step between labels, and what it means.
+pub(crate) fn numbers(
+    canvas: &Canvas,
+    place: Place,
+    (ends, step, x_words): ([f64; 2], f64, &str),
+    (y, y_words): (&Scale, &str),
+) -> Place {
+    let x = Steps {
+        low: ends[0],
+        high: ends[1],
+        step,
+        fine: step,
+    };
+    let labelled = x.values(step).into_iter();
+    let x = Axis {
+        labelled: labelled.map(|v| (v, number(v))).collect(),
+        ..Axis::of_steps(&x)
+    };
+    draw(
+        canvas,
+        place,
+        (x, x_words),
+        (Axis::of_scale(y), y_words),
+        true,
+    )
 }
 
 fn angle(degrees: f64) -> String {

@@ -13,6 +13,7 @@
 //! | [`sphere()`] | a ball under a point light |
 //! | [`difference()`] | by how much the second of two functions differs from the first |
 //! | [`pictures()`] | pictures that somebody else has rendered, side by side |
+//! | [`lines()`] | lines that somebody else has computed, on two axes |
 //!
 //! The same functions and options give the same bytes of SVG on every machine and for any number of threads.
 
@@ -30,6 +31,7 @@ mod figure;
 mod font;
 mod function;
 mod integral;
+mod lines;
 mod lobe3d;
 mod mesh;
 mod options;
@@ -47,6 +49,7 @@ pub use difference::difference;
 pub use error::PlotError;
 pub use figure::Figure;
 pub use function::{Draw, Function};
+pub use lines::{Axes, Line, lines};
 pub use lobe3d::lobe3d;
 pub use options::{Channel, MOST_ANGLES, MOST_FUNCTIONS, Options};
 pub use png::MOST_PIXELS;
