@@ -1,8 +1,9 @@
 //! [`align`], exposures of one view brought over each other.
 //!
 //! Ward 2003, "Fast, Robust Image Registration for Compositing High Dynamic Range Photographs from Hand-Held Exposures": which pixels
-//! are brighter than a quantile depends neither on the exposure nor on the response curve. Two such bitmaps are compared at shifts of
-//! one pixel, from a small picture to the full one; pixels near the threshold, which noise may turn, don't count. The quantile is the
+//! are brighter than a quantile depends neither on the exposure nor on the response curve. Two such pictures of signs are correlated at shifts of
+//! one pixel, from a small picture, where all shifts are tried, to the full one. Unlike Ward's their sign is soft: within a fifth of the pixels around the
+//! threshold it grows in proportion, so that noise turns little and a peak is where edges meet. The quantile is the
 //! one nearest to the median that neither photograph clips. The ball and its surroundings alone are compared: what is far behind it
 //! moves otherwise when the camera does.
 
@@ -12,8 +13,8 @@ use gonio_image::{RawData, RawImage};
 
 /// Share of the compared pixels that may differ: of unrelated pictures half do, of the same scene below a tenth.
 pub const MOST_DIFFERENT: f64 = 0.25;
-/// Codes \[1/255] around the threshold that don't count.
-const UNSURE: f32 = 3.0;
+/// Share of the pixels on each side of the threshold whose sign is soft.
+const SOFT: f64 = 0.1;
 /// Codes \[1/255] of thresholds: outside a camera has clipped, or has nothing but noise.
 const CODES: [f32; 2] = [8.0, 244.0];
 /// Quantiles, the nearest to the median first.
@@ -84,43 +85,71 @@ impl Grey {
         *all.select_nth_unstable_by(n, f32::total_cmp).1
     }
 
-    /// For each pixel 1 if it is brighter than a threshold, −1 if darker, 0 if that isn't sure.
-    fn bitmap(&self, threshold: f32, unsure: f32) -> Vec<i8> {
-        self.values
-            .iter()
-            .map(|v| i8::from(*v > threshold + unsure) - i8::from(*v < threshold - unsure))
-            .collect()
+    /// For each pixel −1 to 1: how firmly it is brighter than the threshold.
+    fn signs(&self, [threshold, soft]: [f32; 2]) -> Vec<f32> {
+        let sign = |v: &f32| ((v - threshold) / soft).clamp(-1.0, 1.0);
+        self.values.iter().map(sign).collect()
     }
 }
 
-/// The quantile that tells two photographs' pixels apart, and its codes in each.
-fn thresholds(a: &Grey, b: &Grey, coded: bool) -> Option<[f32; 2]> {
+/// The quantile that tells two photographs' pixels apart: its code in each, and over how many codes a sign is soft. `None` if there is none that
+/// neither clips, or one of them is flat.
+fn thresholds(a: &Grey, b: &Grey, coded: bool) -> Option<[[f32; 2]; 2]> {
     QUANTILES.into_iter().find_map(|q| {
-        let codes = [a.quantile(q), b.quantile(q)];
-        let inside = |c: f32| !coded || (CODES[0]..=CODES[1]).contains(&c);
+        let codes = [a, b].map(|g| {
+            let [low, middle, high] = [q - SOFT, q, q + SOFT].map(|q| g.quantile(q));
+            [middle, 0.5 * (high - low)]
+        });
+        let inside = |[c, soft]: [f32; 2]| {
+            (!coded || (CODES[0]..=CODES[1]).contains(&c)) && soft > 1e-3 * c.abs()
+        };
         codes.iter().all(|c| inside(*c)).then_some(codes)
     })
 }
 
-/// Share of the pixels that differ if `b` lies at `shift` against `a`, and how many were compared.
-fn difference(a: &[i8], b: &[i8], [w, h]: [usize; 2], [dx, dy]: [i64; 2]) -> (f64, usize) {
+/// How two pictures of signs agree.
+#[derive(Debug, Clone, Copy)]
+struct Score {
+    /// 1 if they are the same.
+    correlation: f64,
+    /// Share of the firm pixels that differ.
+    different: f64,
+    /// Firm pixels.
+    firm: usize,
+}
+
+/// How the pictures of signs agree if `b` lies at `shift` against `a`.
+fn score(a: &[f32], b: &[f32], [w, h]: [usize; 2], [dx, dy]: [i64; 2]) -> Score {
     let stride = (w * h).div_ceil(MOST_PIXELS).max(1);
     // Columns x of `a` for which x + dx is one of `b`.
     let span = |d: i64, n: usize| {
         let n = n as i64;
-        ((-d).clamp(0, n) as usize, (n - d).clamp(0, n) as usize)
+        let low = (-d).clamp(0, n) as usize;
+        (low, ((n - d).clamp(0, n) as usize).max(low))
     };
     let ((x0, x1), (y0, y1)) = (span(dx, w), span(dy, h));
-    let (mut different, mut compared) = (0, 0);
+    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
+    let (mut different, mut firm) = (0, 0);
     for y in (y0..y1).step_by(stride) {
-        let other = (y as i64 + dy) as usize * w;
-        for x in x0..x1 {
-            let product = a[y * w + x] * b[other + (x as i64 + dx) as usize];
-            different += usize::from(product < 0);
-            compared += usize::from(product != 0);
+        let from = ((y as i64 + dy) * w as i64 + x0 as i64 + dx) as usize;
+        let (row, other) = (&a[y * w + x0..y * w + x1], &b[from..from + x1 - x0]);
+        let (mut rab, mut raa, mut rbb) = (0.0_f32, 0.0_f32, 0.0_f32);
+        for (s, t) in row.iter().zip(other) {
+            rab += s * t;
+            raa += s * s;
+            rbb += t * t;
+            different += usize::from(s * t <= -1.0);
+            firm += usize::from((s * t).abs() >= 1.0);
         }
+        ab += f64::from(rab);
+        aa += f64::from(raa);
+        bb += f64::from(rbb);
     }
-    (different as f64 / compared.max(1) as f64, compared)
+    Score {
+        correlation: ab / (aa * bb).sqrt().max(1e-30),
+        different: different as f64 / firm.max(1) as f64,
+        firm,
+    }
 }
 
 /// How `b` lies against `a`; `None` if their codes don't tell: they have no quantile that neither clips, or are flat.
@@ -135,29 +164,31 @@ fn shift(a: &Photo, b: &Photo, window: Window) -> Option<Shift> {
     }
     let found = thresholds(&levels[0][0], &levels[0][1], coded)?;
     let mut at = [0_i64; 2];
-    let mut best = (1.0, 0);
-    for [x, y] in levels.iter().rev() {
+    let mut best = None;
+    for (k, [x, y]) in levels.iter().rev().enumerate() {
         let size = [x.width, x.height];
-        // Linear values have no codes: a hundredth of the threshold is unsure.
-        let unsure = |t: f32| if coded { UNSURE } else { 0.01 * t };
-        let maps = [
-            x.bitmap(found[0], unsure(found[0])),
-            y.bitmap(found[1], unsure(found[1])),
-        ];
-        let from = at.map(|d| 2 * d);
-        best = difference(&maps[0], &maps[1], size, from);
+        let signs = [x.signs(found[0]), y.signs(found[1])];
+        // All shifts of the smallest picture up to a quarter of it, then those beside twice the last.
+        let (from, reach) = if k == 0 {
+            ([0, 0], (x.width.min(x.height) / 4) as i64)
+        } else {
+            (at.map(|d| 2 * d), 1)
+        };
+        let mut here = score(&signs[0], &signs[1], size, from);
         at = from;
-        for k in 0..9 {
-            let candidate = [from[0] + k % 3 - 1, from[1] + k / 3 - 1];
-            let value = difference(&maps[0], &maps[1], size, candidate);
-            if value.1 >= FEWEST && value.0 < best.0 {
-                (best, at) = (value, candidate);
+        for (dx, dy) in (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (x, y))) {
+            let candidate = [from[0] + dx, from[1] + dy];
+            let there = score(&signs[0], &signs[1], size, candidate);
+            if there.firm >= FEWEST && there.correlation > here.correlation {
+                (here, at) = (there, candidate);
             }
         }
+        best = Some(here);
     }
-    (best.1 >= FEWEST).then_some(Shift {
+    let best = best.filter(|b| b.firm >= FEWEST)?;
+    Some(Shift {
         pixels: at,
-        different: best.0,
+        different: best.different,
     })
 }
 
@@ -297,14 +328,24 @@ mod tests {
     use gonio_num::Real;
     use gonio_radiometry::sequence::Rng;
 
-    /// Waves, seen from `at`, exposed by `h`, through a curve, with noise.
+    /// Spots, seen from `at`, exposed by `h`, through a curve, with noise.
     fn shot(at: [i64; 2], h: f64, seed: &str) -> Photo {
+        of_spots("spots", at, h, seed)
+    }
+
+    fn of_spots(scene: &str, at: [i64; 2], h: f64, seed: &str) -> Photo {
+        let mut spots = Rng::from_name(scene);
+        let spots: Vec<[f64; 3]> = (0..60)
+            .map(|_| [200.0, 150.0, 4.0].map(|size| size * spots.next_f64()))
+            .collect();
         let mut rng = Rng::from_name(seed);
         let data = (0..200 * 150)
             .map(|i| {
                 let (x, y) = ((i % 200 + at[0]) as f64, (i / 200 + at[1]) as f64);
-                let wave = Real::sin(0.11 * x + 0.05 * y) + Real::sin(0.013 * x * y / 20.0);
-                let e = h * Real::exp(1.2 * wave);
+                let spot = |[a, b, light]: &[f64; 3]| {
+                    light * Real::exp(-((x - a) * (x - a) + (y - b) * (y - b)) / 150.0)
+                };
+                let e = h * (0.1 + spots.iter().map(spot).sum::<f64>());
                 let noise = 4.0 * (rng.next_f64() - 0.5);
                 let code = 255.0 * Real::powf(e.min(1.0), 0.45) + noise;
                 let code = code.clamp(0.0, 255.0) as u8;
@@ -339,11 +380,7 @@ mod tests {
 
     #[test]
     fn photographs_of_something_else_are_refused() {
-        let mut other = shot([0, 0], 0.5, "other");
-        if let RawData::U8(d) = &mut other.picture.data {
-            // Upside down.
-            d.reverse();
-        }
+        let other = of_spots("other spots", [0, 0], 0.5, "other");
         let photos = [shot([0, 0], 0.2, "this"), other];
         let error = align(&photos, &[0.2, 0.5], None).unwrap_err();
         assert!(
@@ -382,13 +419,14 @@ mod tests {
         };
         for (i, (a, b)) in d.iter_mut().zip(e).enumerate() {
             let (x, y) = ((i % 200) as f64 - 60.0, (i / 200) as f64 - 75.0);
-            if x * x + y * y < 2500.0 {
+            // A tenth of the picture.
+            if x * x + y * y < 900.0 {
                 *a = *b;
             }
         }
         let photos = [shot([0, 0], 0.2, "before"), mixed];
         let of = |circle| align(&photos, &[0.2, 0.3], circle).unwrap().shifts[1];
-        assert_eq!(of(Some([60.0, 75.0, 35.0])), Some([-4, -4]));
+        assert_eq!(of(Some([60.0, 75.0, 22.0])), Some([-4, -4]));
         // Negative control: most of the picture stands still.
         assert_eq!(of(None), Some([0, 0]));
     }

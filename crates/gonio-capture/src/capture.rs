@@ -36,6 +36,9 @@ pub struct Options {
     pub lens: Lens,
     /// Circles \[pixels: x, y, radius]: none (then they are found) or one a view.
     pub balls: Vec<[f64; 3]>,
+    /// Rotations from the frame of each further view's camera into that of the first's: none (then they are found) or one a view but the
+    /// first.
+    pub rotations: Vec<Rotation>,
     /// What the ball is made of.
     pub material: BallMaterial,
     /// Rows of the panorama, which is twice as wide: 8 to 16,384.
@@ -60,6 +63,7 @@ impl Default for Options {
             response: ResponseChoice::Auto,
             lens: Lens::Unknown,
             balls: Vec::new(),
+            rotations: Vec::new(),
             material: BallMaterial::Chrome,
             height: 512,
             margin: 1.5,
@@ -167,9 +171,21 @@ pub fn capture(
     let mut registrations = vec![None];
     if found.len() > 1 {
         let reference = small(&found[0]);
-        for view in &found[1..] {
-            let names = [found[0].2, view.2];
-            registrations.push(Some(register::register(&reference, &small(view), names)?));
+        for (k, view) in found[1..].iter().enumerate() {
+            let registered = match options.rotations.get(k) {
+                Some(rotation) => register::given(&reference, &small(view), *rotation),
+                None => register::register(&reference, &small(view), [found[0].2, view.2])?,
+            };
+            if registered.correlation < register::LEAST_CORRELATION {
+                notes.push(format!(
+                    "{}: turned as given it correlates with {} by {:.2} alone: a right rotation gives {:.2} or more",
+                    view.2,
+                    found[0].2,
+                    registered.correlation,
+                    register::LEAST_CORRELATION
+                ));
+            }
+            registrations.push(Some(registered));
         }
     }
     progress("unwrapping", 0.75);
@@ -280,6 +296,13 @@ fn check(photos: &[Photo], options: &Options) -> Result<(), CaptureError> {
             "balls",
             &options.balls.len(),
             "one circle for each view",
+        ));
+    }
+    if !options.rotations.is_empty() && options.rotations.len() + 1 != options.views {
+        return Err(wrong(
+            "rotations",
+            &options.rotations.len(),
+            "one for each view but the first",
         ));
     }
     if !(8..=16_384).contains(&options.height) {

@@ -168,9 +168,9 @@ impl CaptureError {
             Self::NoBall { .. } => {
                 Some("if there is a ball, say where: --ball X,Y,RADIUS in pixels")
             }
-            Self::DifferentScenes { .. } => {
-                Some("photograph the same ball, in the same place and light, from each viewpoint")
-            }
+            Self::DifferentScenes { .. } => Some(
+                "photograph the same ball, in the same place and light, from each viewpoint; if that was done, say how they are turned: --turned YAW,PITCH,ROLL",
+            ),
             Self::Restore { help, .. } => Some(help),
         }
     }

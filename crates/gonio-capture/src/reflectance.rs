@@ -22,8 +22,8 @@ pub enum BallMaterial {
     /// 3.9.1 (BSD-3-Clause) that `gonio-brdf` has as the metal `chrome`.
     #[default]
     Chrome,
-    /// Steel, as iron: the oxide film that makes steel stainless is too thin to be seen. η and k at 650, 550 and 450 nm:
-    /// Johnson & Christy 1974, Phys. Rev. B 9, 5056, as tabulated by Lagarde 2013.
+    /// Steel, as iron: the oxide film that makes steel stainless is too thin to be seen. η and k at 650, 550 and 450 nm, linear between the
+    /// measurements of Johnson & Christy 1974, "Optical constants of transition metals", Phys. Rev. B 9, 5056.
     Steel,
     /// Reflectance at normal incidence, RGB in (0, 1], with Schlick's increase towards grazing incidence (17).
     F0([f64; 3]),
@@ -117,6 +117,26 @@ mod tests {
             for (f, [eta, k]) in found.iter().zip(indices) {
                 let expected = ((eta - 1.0).powi(2) + k * k) / ((eta + 1.0).powi(2) + k * k);
                 assert!((f - expected).abs() < 1e-14, "{f} {expected}");
+            }
+        }
+    }
+
+    /// The rows of Johnson & Christy's table of iron (λ \[µm], η, k) on both sides of 650, 550 and 450 nm.
+    #[test]
+    fn steel_is_iron_as_it_was_measured() {
+        let rows = [
+            (0.650, [[0.617, 2.88, 3.05], [0.659, 2.92, 3.10]]),
+            (0.550, [[0.549, 2.95, 2.93], [0.582, 2.94, 2.99]]),
+            (0.450, [[0.431, 2.48, 2.71], [0.451, 2.59, 2.77]]),
+        ];
+        for ([eta, k], (lambda, [a, b])) in IRON.into_iter().zip(rows) {
+            let t = (lambda - a[0]) / (b[0] - a[0]);
+            for (found, i) in [(eta, 1), (k, 2)] {
+                // Four decimals are kept.
+                assert!(
+                    (found - (a[i] + t * (b[i] - a[i]))).abs() < 6e-5,
+                    "{lambda} {i}"
+                );
             }
         }
     }

@@ -32,7 +32,7 @@ pub struct Registration {
     pub rotation: Rotation,
     /// Correlation of the details, 1 if they are the same.
     pub correlation: f64,
-    /// Standard deviation of the rotation \[rad], of the fit's residuals.
+    /// Standard deviation of the rotation \[rad], of the fit's residuals; 0 if it was given.
     pub sigma: f64,
 }
 
@@ -252,6 +252,17 @@ pub fn register(
         correlation,
         sigma,
     })
+}
+
+/// The registration by a rotation that is known, with the correlation that it reaches.
+pub fn given(reference: &Panorama, view: &Panorama, rotation: Rotation) -> Registration {
+    let (a, b) = (pyramid(reference), pyramid(view));
+    let judged = a.iter().position(|l| l.h >= JUDGED).unwrap_or(a.len() - 1);
+    Registration {
+        rotation,
+        correlation: correlation(&a[judged].details(), &b[judged].details(), rotation),
+        sigma: 0.0,
+    }
 }
 
 /// Rotations refined through some levels, and the correlation of the last level's details; the best first.

@@ -35,7 +35,7 @@ fn directions_and_light_come_back() {
         &options(&studio),
     )
     .unwrap();
-    let e = compare(&found, &studio, &env);
+    let e = compare(&found, &[studio], &env);
     assert!(e.direction[0] < 1.2 && e.direction[1] < 5.0, "{e:?}");
     // Vignetting dims the ball's rim by (100/250)² · 10 % = 1.6 %; a misplaced texel of this sky differs by some per cent.
     assert!(e.radiance[0] < 0.1, "{e:?}");
@@ -49,11 +49,53 @@ fn directions_and_light_come_back() {
     };
     let off = compare(
         &taken(&shots(&studio, &real_film(&STOPS), "come back"), &wrong).unwrap(),
-        &studio,
+        &[studio],
         &env,
     );
     assert!(off.direction[0] > 3.0 * e.direction[0], "{off:?} {e:?}");
     assert!(off.radiance[1] > e.radiance[1], "{off:?} {e:?}");
+}
+
+/// Exposures between which the camera was knocked come back as those of a tripod do: they are moved by whole pixels, so that a half remains,
+/// which turns a direction by 2 · 0.5 tan β / ρ: 0.6° for half of the directions, beside what the outline costs.
+#[test]
+fn a_knocked_camera_is_noticed_and_made_good() {
+    let env = sunset(8.0);
+    let studio = near(8.0, SIZE);
+    let (photos, seen) = knocked(&studio, &env, &STOPS);
+    let found = taken(&photos, &options(&studio)).unwrap();
+    let moved = found.notes.iter().filter(|n| n.contains("moved back"));
+    assert_eq!(moved.count(), 2, "{:?}", found.notes);
+    let e = compare(&found, &[seen], &env);
+    assert!(e.direction[0] < 1.8 && e.radiance[0] < 0.1, "{e:?}");
+    // A tripod's need nothing.
+    let still = shots(&studio, &real_film(&STOPS), "come back");
+    let aligned = gonio_capture::align::align(&still, &STOPS, None).unwrap();
+    assert_eq!(aligned.photos, None, "{:?}", aligned.shifts);
+    // Negative control: merged as they are, exposures contradict each other at every edge.
+    let response = gonio_capture::Response::recover(&still, &STOPS).unwrap();
+    let edges = |photos: &[Photo]| {
+        let merged = gonio_capture::Radiance::merge(photos, &STOPS, &response).unwrap();
+        let mut sigma: Vec<f64> = merged.sigma.iter().map(|s| f64::from(*s)).collect();
+        quantile(&mut sigma, 0.95)
+    };
+    let aligned = gonio_capture::align::align(&photos, &STOPS, None).unwrap();
+    let (apart, together) = (edges(&photos), edges(&aligned.photos.unwrap()));
+    assert!(apart > 1.5 * together, "{apart} {together}");
+}
+
+#[test]
+fn exposures_of_different_views_are_refused() {
+    let studio = near(8.0, SIZE);
+    let mut photos = shots(&studio, &real_film(&[0.5]), "one view");
+    let turned = Studio {
+        rotation: Rotation::of_angles(1.5, 0.15, 0.05),
+        ..studio
+    };
+    photos.extend(shots(&turned, &real_film(&[0.1]), "another"));
+    let error = taken(&photos, &options(&studio)).unwrap_err();
+    assert!(matches!(error, CaptureError::NotAligned { .. }), "{error}");
+    assert!(error.help().unwrap().contains("--views"));
 }
 
 #[test]
@@ -118,6 +160,24 @@ fn two_viewpoints_become_one_panorama() {
     let rotation = two.views[1].registration.unwrap().rotation;
     let error = rotation.inverse().then_inner(turn).angle().to_degrees();
     assert!(error < 1.2, "{error}");
+    // Negative control of the measure: a rotation that is 5° off shows in directions, light and the correlation.
+    let off = |deg: f64| {
+        let wrong = turn.then_inner(Rotation::of_angles(deg.to_radians(), 0.0, 0.0));
+        let forced = Options {
+            views: 2,
+            rotations: vec![wrong],
+            ..marked.clone()
+        };
+        let found = taken(&photos, &forced).unwrap();
+        (
+            compare(&found, &[first, second], &env),
+            found.views[1].registration.unwrap().correlation,
+        )
+    };
+    let ((right, good), (wrong, bad)) = (off(0.0), off(5.0));
+    assert!(bad < good - 0.05, "{bad} {good}");
+    assert!(wrong.direction[1] > 4.0 && wrong.direction[0] > right.direction[0] + 1.0);
+    assert!(wrong.radiance[0] > right.radiance[0], "{wrong:?} {right:?}");
     // The photographer of the first view is at +z: black there alone, sky or sea with the second view.
     let one = taken(&alone, &marked).unwrap();
     let camera = ball(&first).towards_camera();
@@ -162,7 +222,7 @@ fn the_sun_comes_back_by_a_grey_ball() {
         ..options(&studio)
     };
     let burnt = perfect_film(&[0.1]).expose(&studio.radiance(&light(&env), &dark), "burnt");
-    let before = compare(&taken(&burnt, &linear).unwrap(), &studio, &env);
+    let before = compare(&taken(&burnt, &linear).unwrap(), &[studio], &env);
     let grey = Studio {
         material: None,
         rays: 1,
@@ -175,7 +235,7 @@ fn the_sun_comes_back_by_a_grey_ball() {
         ..linear
     };
     let found = taken(&burnt, &restored).unwrap();
-    let after = compare(&found, &studio, &env);
+    let after = compare(&found, &[studio], &env);
     // Without it more than half of the light is gone; with it a tenth may be wrong, as without any sun.
     assert!(
         before.irradiance > 0.5 && after.irradiance < 0.1,
@@ -268,6 +328,10 @@ fn unusable_photographs_are_one_error_each() {
         },
         Options {
             height: 1,
+            ..plain.clone()
+        },
+        Options {
+            rotations: vec![Rotation::IDENTITY],
             ..plain.clone()
         },
         Options {
@@ -385,7 +449,7 @@ fn our_renderer_takes_the_same_photograph() {
         },
     )
     .unwrap();
-    let e = compare(&found, &studio, &env);
+    let e = compare(&found, &[studio], &env);
     assert!(
         e.direction[0] < 1.5 && e.radiance[0] < 0.1 && e.irradiance < 0.1,
         "{e:?}"

@@ -133,12 +133,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         .num_threads(1)
         .use_current_thread()
         .build()?;
-    alone.install(|| -> Result<(), Box<dyn Error>> {
-        for (name, scene) in scenes()? {
+    let scenes = scenes()?;
+    alone.install(|| {
+        for (name, scene) in &scenes {
             let count = ((f64::from(REFERENCE) * scale) as u32).max(1);
             let halves = [
-                picture(&scene, EnvironmentSampling::Luminance, count, 1 << 40),
-                picture(&scene, product(4), count, 1 << 41),
+                picture(scene, EnvironmentSampling::Luminance, count, 1 << 40),
+                picture(scene, product(4), count, 1 << 41),
             ];
             let reference: Vec<[f64; 3]> = halves[0]
                 .pixels()
@@ -154,7 +155,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             for seed in 0..((SEEDS as f64 * scale) as u64).max(2) {
                 for (k, (_, sampling)) in samplings.iter().enumerate() {
                     let before = cpu_seconds(start);
-                    let film = picture(&scene, *sampling, SAMPLES, seed);
+                    let film = picture(scene, *sampling, SAMPLES, seed);
                     let seconds = cpu_seconds(start) - before;
                     worth[k].push((error(&film, &reference, mean), seconds));
                 }
@@ -174,6 +175,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
             println!();
         }
-        Ok(())
-    })
+    });
+    Ok(())
 }

@@ -6,7 +6,7 @@ use crate::cli::parse;
 use crate::cli::terminal::{note, print};
 use gonio_capture::response::Origin;
 use gonio_capture::{
-    BallMaterial, Capture, KnownLight, Lens, Options, Photo, Projection, ResponseChoice,
+    BallMaterial, Capture, KnownLight, Lens, Options, Photo, Projection, ResponseChoice, Rotation,
 };
 use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::Write;
@@ -47,6 +47,9 @@ pub(in crate::cli) struct Arguments {
     /// Outline of the ball in pixels, once for each viewpoint [default: found]
     #[arg(long, value_name = "X,Y,RADIUS", value_parser = circle)]
     ball: Vec<Circle>,
+    /// How a further viewpoint's camera is turned against the first's, once for each [default: found]
+    #[arg(long, value_name = "YAW,PITCH,ROLL", value_parser = turn, allow_hyphen_values = true)]
+    turned: Vec<Turn>,
     /// What the ball is made of, to divide its reflectance out: chrome, steel, perfect, or F0 such as 0.9 or 0.95/0.93/0.88
     #[arg(long, value_name = "MATERIAL", default_value = "chrome", value_parser = material)]
     ball_material: BallMaterial,
@@ -83,6 +86,23 @@ fn circle(text: &str) -> Result<Circle, String> {
     gonio_capture::ball::parse_circle(text)
         .map(Circle)
         .map_err(|e| e.to_string())
+}
+
+#[derive(Clone, Copy)]
+struct Turn([f64; 3]);
+
+/// Reads degrees, such as `86,8.6,-2`.
+fn turn(text: &str) -> Result<Turn, String> {
+    let numbers: Option<Vec<f64>> = text
+        .split(',')
+        .map(|n| n.trim().parse::<f64>().ok().filter(|x| x.is_finite()))
+        .collect();
+    match numbers.as_deref() {
+        Some(&[yaw, pitch, roll]) => Ok(Turn([yaw, pitch, roll])),
+        _ => Err(format!(
+            "'{text}' is no rotation: expected yaw,pitch,roll in degrees, such as 86,8.6,-2"
+        )),
+    }
 }
 
 fn material(text: &str) -> Result<BallMaterial, String> {
@@ -161,6 +181,14 @@ fn options(a: &Arguments) -> Result<Options, Failure> {
             (None, None) => Lens::Unknown,
         },
         balls: a.ball.iter().map(|c| c.0).collect(),
+        rotations: a
+            .turned
+            .iter()
+            .map(|t| {
+                let [yaw, pitch, roll] = t.0.map(f64::to_radians);
+                Rotation::of_angles(yaw, pitch, roll)
+            })
+            .collect(),
         material: a.ball_material,
         height: a.size,
         margin: a.margin.into(),
@@ -280,6 +308,14 @@ fn summary(capture: &Capture, output: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rotations_are_read() {
+        assert_eq!(turn("86, 8.6,-2").unwrap().0, [86.0, 8.6, -2.0]);
+        for bad in ["", "1,2", "1,2,3,4", "a,b,c", "1,2,inf"] {
+            assert!(turn(bad).is_err_and(|e| e.contains("no rotation")), "{bad}");
+        }
+    }
 
     #[test]
     fn exposures_are_read() {
