@@ -11,7 +11,7 @@ use crate::CaptureError;
 use crate::photo::Photo;
 use gonio_image::{RawData, RawImage};
 
-/// Share of the compared pixels that may differ: of unrelated pictures half do, of the same scene below a tenth.
+/// Share of the pixels that may be bright in one and dark in the other: of unrelated pictures up to half are, of the same scene few.
 pub const MOST_DIFFERENT: f64 = 0.25;
 /// Share of the pixels on each side of the threshold whose sign is soft.
 const SOFT: f64 = 0.1;
@@ -31,7 +31,7 @@ const FEWEST: usize = 64;
 pub struct Shift {
     /// Where a place is here, less where it is in the other \[pixels: right, down].
     pub pixels: [i64; 2],
-    /// Share of the compared pixels that differ.
+    /// Share of the firm pixels that are bright in one and dark in the other, at the quantile at which it is largest.
     pub different: f64,
 }
 
@@ -92,19 +92,16 @@ impl Grey {
     }
 }
 
-/// The quantile that tells two photographs' pixels apart: its code in each, and over how many codes a sign is soft. `None` if there is none that
-/// neither clips, or one of them is flat.
-fn thresholds(a: &Grey, b: &Grey, coded: bool) -> Option<[[f32; 2]; 2]> {
-    QUANTILES.into_iter().find_map(|q| {
-        let codes = [a, b].map(|g| {
-            let [low, middle, high] = [q - SOFT, q, q + SOFT].map(|q| g.quantile(q));
-            [middle, 0.5 * (high - low)]
-        });
-        let inside = |[c, soft]: [f32; 2]| {
-            (!coded || (CODES[0]..=CODES[1]).contains(&c)) && soft > 1e-3 * c.abs()
-        };
-        codes.iter().all(|c| inside(*c)).then_some(codes)
-    })
+/// A quantile's code in each of two photographs, and over how many codes a sign is soft. `None` if one of them clips it, or is flat.
+fn threshold(a: &Grey, b: &Grey, q: f64, coded: bool) -> Option<[[f32; 2]; 2]> {
+    let codes = [a, b].map(|g| {
+        let [low, middle, high] = [q - SOFT, q, q + SOFT].map(|q| g.quantile(q));
+        [middle, 0.5 * (high - low)]
+    });
+    let inside = |[c, soft]: [f32; 2]| {
+        (!coded || (CODES[0]..=CODES[1]).contains(&c)) && soft > 1e-3 * c.abs()
+    };
+    codes.iter().all(|c| inside(*c)).then_some(codes)
 }
 
 /// How two pictures of signs agree.
@@ -162,7 +159,10 @@ fn shift(a: &Photo, b: &Photo, window: Window) -> Option<Shift> {
         let half = [x.halved(), y.halved()];
         levels.push(half);
     }
-    let found = thresholds(&levels[0][0], &levels[0][1], coded)?;
+    let [x, y] = &levels[0];
+    let found = QUANTILES
+        .into_iter()
+        .find_map(|q| threshold(x, y, q, coded))?;
     let mut at = [0_i64; 2];
     let mut best = None;
     for (k, [x, y]) in levels.iter().rev().enumerate() {
@@ -185,10 +185,19 @@ fn shift(a: &Photo, b: &Photo, window: Window) -> Option<Shift> {
         }
         best = Some(here);
     }
-    let best = best.filter(|b| b.firm >= FEWEST)?;
+    best.filter(|b| b.firm >= FEWEST)?;
+    // Any two landscapes are bright above and dark below: what is no coincidence agrees at every quantile.
+    let [x, y] = &levels[0];
+    let different = QUANTILES
+        .into_iter()
+        .filter_map(|q| threshold(x, y, q, coded))
+        .map(|[a, b]| score(&x.signs(a), &y.signs(b), [x.width, x.height], at))
+        .filter(|s| s.firm >= FEWEST)
+        .map(|s| s.different)
+        .fold(0.0, f64::max);
     Some(Shift {
         pixels: at,
-        different: best.different,
+        different,
     })
 }
 

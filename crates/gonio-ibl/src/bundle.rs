@@ -276,7 +276,7 @@ pub fn check(options: &Options) -> Result<(), IblError> {
             "a whole number from 1 to 4096",
         ));
     }
-    Dfg::at(&options.table_model, &[0.5], 1)?;
+    Dfg::at(&options.table_model, &[0.5], &[0.5])?;
     options.family.kernel(0.5)?;
     for (name, size) in [
         ("size", options.size),
@@ -490,15 +490,15 @@ pub fn table_picture(
     sheen: bool,
 ) -> Result<Image, IblError> {
     let layout = target.table();
-    let cosines: Vec<f64> = (0..size)
-        .map(|x| {
-            let c = (x as f64 + 0.5) / size as f64;
-            if layout.root_cosine { c * c } else { c }
-        })
-        .collect();
-    let whole = Dfg::at(model, &cosines, size)?;
+    let roughnesses = layout.nodes(size);
+    let cosines: Vec<f64> = if layout.root_cosine {
+        roughnesses.iter().map(|c| c * c).collect()
+    } else {
+        roughnesses.clone()
+    };
+    let whole = Dfg::at(model, &cosines, &roughnesses)?;
     let sheen = match sheen {
-        true => Some(Dfg::at("sheen-charlie", &cosines, size)?),
+        true => Some(Dfg::at("sheen-charlie", &cosines, &roughnesses)?),
         false => None,
     };
     Ok(Image::from_fn(size, size, |x, y| {

@@ -22,13 +22,16 @@ use rayon::prelude::*;
 /// A table over cosine and roughness.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dfg {
-    /// Columns: μ = n·v = (x + ½)/width.
+    /// Columns, by μ = n·v: (x + ½)/width unless they were given.
     pub width: usize,
-    /// Rows: perceptual roughness (y + ½)/height.
+    /// Rows, by perceptual roughness: (y + ½)/height unless they were given.
     pub height: usize,
     /// (bias, whole) of each entry, row after row from roughness 0.
     pub values: Vec<[f32; 2]>,
 }
+
+/// Columns or rows at most.
+const MOST: usize = 4096;
 
 /// Quadrature in the sampler's numbers: steps along the first, which turns around, and midpoints along the second, crowded at both
 /// ends. Rules of higher order lose: where the mirrored direction is on the horizon the integrand has an edge, nearly along a ring.
@@ -44,20 +47,22 @@ impl Dfg {
     /// # Errors
     /// [`IblError::Model`] for a model without the parameter `roughness`; sizes that are 0 or above 4096.
     pub fn new(model: &str, width: usize, height: usize) -> Result<Self, IblError> {
-        let cosines: Vec<f64> = (0..width)
-            .map(|x| (x as f64 + 0.5) / width as f64)
-            .collect();
-        Self::at(model, &cosines, height)
+        let middles = |n: usize| -> Vec<f64> {
+            // As many as are refused, but no more memory than that.
+            let n = n.min(MOST + 1);
+            (0..n).map(|x| (x as f64 + 0.5) / n as f64).collect()
+        };
+        Self::at(model, &middles(width), &middles(height))
     }
 
-    /// The table whose columns are at these cosines, each in (0, 1].
+    /// The table whose columns are at these cosines and whose rows are at these perceptual roughnesses, each in (0, 1].
     ///
     /// # Errors
     /// As [`Dfg::new`].
-    pub fn at(model: &str, cosines: &[f64], height: usize) -> Result<Self, IblError> {
-        let width = cosines.len();
+    pub fn at(model: &str, cosines: &[f64], roughnesses: &[f64]) -> Result<Self, IblError> {
+        let (width, height) = (cosines.len(), roughnesses.len());
         for (name, n) in [("table width", width), ("table height", height)] {
-            if !(1..=4096).contains(&n) {
+            if !(1..=MOST).contains(&n) {
                 return Err(IblError::parameter(
                     name,
                     n,
@@ -65,8 +70,10 @@ impl Dfg {
                 ));
             }
         }
-        if let Some(bad) = cosines.iter().find(|c| !(**c > 0.0 && **c <= 1.0)) {
-            return Err(IblError::parameter("cosine", bad, "a number in (0, 1]"));
+        for (name, numbers) in [("cosine", cosines), ("roughness", roughnesses)] {
+            if let Some(bad) = numbers.iter().find(|c| !(**c > 0.0 && **c <= 1.0)) {
+                return Err(IblError::parameter(name, bad, "a number in (0, 1]"));
+            }
         }
         let base = ModelSpec::parse(model)?;
         let names: Vec<&str> = base.parameters()?.iter().map(|p| p.name).collect();
@@ -76,10 +83,9 @@ impl Dfg {
                 reason: "no parameter `roughness` to make a table over".to_owned(),
             });
         }
-        let rows: Result<Vec<Vec<[f32; 2]>>, IblError> = (0..height)
-            .into_par_iter()
-            .map(|y| {
-                let roughness = (y as f64 + 0.5) / height as f64;
+        let rows: Result<Vec<Vec<[f32; 2]>>, IblError> = roughnesses
+            .par_iter()
+            .map(|&roughness| {
                 let mut spec = base.clone();
                 spec.set_text("roughness", &roughness.to_string())?;
                 let own = |key: &str| base.values.contains_key(key);

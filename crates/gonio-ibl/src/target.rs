@@ -9,13 +9,23 @@
 //! | `unity` | 1.7/1.4 − √(2.89/1.96 − 2.8/1.96 · k/6) | x right, y up, z forward | irradiance/π, times the constants | (bias, whole) over √μ |
 //! | `custom` | k/(n−1) | OpenGL's | as [`crate::harmonics`] | (scale, bias) |
 //!
-//! Sources: glTF: Khronos' glTF-IBL-Sampler (`lib/source/lib.cpp`), glTF-Sample-Renderer (`ibl.glsl`), and the extension
-//! `EXT_lights_image_based`. Filament: `libs/iblprefilter/src/IBLPrefilterContext.cpp` (`lodToPerceptualRoughness`),
-//! `shaders/src/surface_light_indirect.fs`, and the document Filament.md.html, §5.3.4. three.js:
-//! `renderers/shaders/ShaderChunk/cube_uv_reflection_fragment.glsl.js`, `extras/PMREMGenerator.js`, `math/SphericalHarmonics3.js`.
-//! Unreal Engine: `ReflectionEnvironmentShared.ush` (`ComputeReflectionCaptureRoughnessFromMip`), `SHCommon.ush`. Unity:
-//! `ImageBasedLighting.hlsl` (`MipmapLevelToPerceptualRoughness`), `EntityLighting.hlsl` (`SHEvalLinearL0L1`, `SHEvalLinearL2`) of
-//! its Core render-pipeline package.
+//! Sources, each read, and what was found there:
+//!
+//! - glTF: Khronos' glTF-IBL-Sampler (`lib/source/lib.cpp`) and glTF-Sample-Viewer (`source/Renderer/shaders/ibl.glsl`: R F₀ + G at (n·v, roughness)).
+//!   `extensions/2.0/Vendor/EXT_lights_image_based/README.md` says "irradiance", refers to Ramamoorthi & Hanrahan 2001, and leaves the basis's sign open.
+//!   The sample that its authors made, `2.0/EnvironmentTest/glTF-IBL/EnvironmentTest.gltf` of glTF-Sample-Models, has a positive coefficient of y under light
+//!   from above: no sign. Babylon.js (`packages/dev/core/src/Maths/sphericalPolynomial.ts`, `SH3ylmBasisConstants`) reads them with the
+//!   Condon–Shortley sign: for it negate coefficients 1, 3, 5 and 7.
+//! - Filament: `libs/ibl/src/CubemapSH.cpp` (`computeIrradianceSH3Bands`: A_l/π and the squared constants), `shaders/src/surface_light_indirect.fs`
+//!   (`Irradiance_SphericalHarmonics`, mix(dfg.x, dfg.y, f0) at (n·v, roughness), lod = n p (2 − p)), `tools/cmgen/src/cmgen.cpp` and
+//!   `libs/ibl/src/CubemapIBL.cpp` (rows from rough to smooth; cmgen's rows lie one texel beside where the shader looks them up, ours don't).
+//! - three.js: `src/math/SphericalHarmonics3.js` (order and constants of `getIrradianceAt`), `src/renderers/shaders/ShaderChunk/cube_uv_reflection_fragment.glsl.js`
+//!   (`getUV`, `roughnessToMip`), `src/extras/PMREMGenerator.js`.
+//! - Unreal Engine: `ReflectionEnvironmentShared.ush` (`ComputeReflectionCaptureRoughnessFromMip` with the largest mip n − 1), `SHCommon.ush`
+//!   (`SHBasisFunction3`, `CalcDiffuseTransferSH3`), `BRDF.ush` (`EnvBRDF`).
+//! - Unity: `com.unity.render-pipelines.core/ShaderLibrary/ImageBasedLighting.hlsl` (`MipmapLevelToPerceptualRoughness`) and `EntityLighting.hlsl` (`SHEvalLinearL0L1`,
+//!   `SHEvalLinearL2`), `Common.hlsl` (`Remap01ToHalfTexelCoord`), and `com.unity.render-pipelines.high-definition/Runtime/Material/PreIntegratedFGD/PreIntegratedFGD.hlsl`
+//!   (lerp(x, y, F₀) at (√(n·v), roughness), both from the middle of the first texel to that of the last).
 
 use crate::{Harmonics, IblError};
 use gonio_num::Vec3;
@@ -50,6 +60,23 @@ pub struct TableLayout {
     pub root_cosine: bool,
     /// Row 0 is the roughest.
     pub rough_first: bool,
+    /// The middles of the outermost texels are at 0 and 1 instead of half a texel inside.
+    pub end_to_end: bool,
+}
+
+/// What stands for 0 at the end of a table: there the reflectance is that of its limit to single precision, for a mirror as well as along the surface.
+const NEARLY_NONE: f64 = 1e-3;
+
+impl TableLayout {
+    /// The numbers along an axis of `n` texels: roughness, and μ or √μ, in (0, 1].
+    pub fn nodes(self, n: usize) -> Vec<f64> {
+        (0..n)
+            .map(|k| match self.end_to_end {
+                true if n > 1 => (k as f64 / (n - 1) as f64).max(NEARLY_NONE),
+                _ => (k as f64 + 0.5) / n as f64,
+            })
+            .collect()
+    }
 }
 
 impl Target {
@@ -137,6 +164,7 @@ impl Target {
             multiple_scattering: matches!(self, Self::Filament | Self::Unity),
             root_cosine: self == Self::Unity,
             rough_first: self == Self::Filament,
+            end_to_end: self == Self::Unity,
         }
     }
 
@@ -144,7 +172,7 @@ impl Target {
     pub fn harmonics_meaning(self) -> &'static str {
         match self {
             Self::Gltf => {
-                "irradiance [W m⁻²], orthonormal basis without the Condon–Shortley sign: irradianceCoefficients of EXT_lights_image_based"
+                "irradiance [W m⁻²], orthonormal basis without the Condon–Shortley sign: irradianceCoefficients of EXT_lights_image_based as its sample file has them; Babylon.js reads coefficients 1, 3, 5 and 7 with the opposite sign"
             }
             Self::Three => {
                 "radiance, orthonormal basis without the Condon–Shortley sign: SphericalHarmonics3.coefficients; its shader makes irradiance of it"
@@ -293,6 +321,28 @@ mod tests {
         // Of a cube of 256 texels three.js's level 1 has tiles of 128: mip 7.
         let r: f64 = Target::Three.roughness(1, Target::Three.levels(256));
         assert!((-2.0 * (1.16 * r).log2() - 7.0).abs() < 1e-12);
+    }
+
+    /// HDRP reads its table with `Remap01ToHalfTexelCoord`, u (1 − 1/n) + 1/(2n): at a texel's middle u is k/(n − 1). The others read (k + ½)/n.
+    #[test]
+    fn tables_have_their_nodes_where_the_shader_reads() {
+        let n = 64;
+        for target in Target::ALL {
+            let nodes = target.table().nodes(n);
+            for (k, node) in nodes.into_iter().enumerate().skip(1) {
+                let middle = (k as f64 + 0.5) / n as f64;
+                let read = if target == Target::Unity {
+                    let at = node * (1.0 - 1.0 / n as f64) + 0.5 / n as f64;
+                    assert!((node - middle).abs() > 1e-4 || 2 * k == n);
+                    at
+                } else {
+                    node
+                };
+                assert!((read - middle).abs() < 1e-12, "{target:?} {k}");
+            }
+        }
+        assert!(Target::Unity.table().nodes(2) == [1e-3, 1.0]);
+        assert!(Target::Unity.table().nodes(1) == [0.5]);
     }
 
     /// A function of three bands whose coefficients are all different.

@@ -87,9 +87,33 @@ fn integrate(f: &Model<f64, 3>, wo: Vec3<f64>) -> [f64; 2] {
     sum
 }
 
+/// Unity's table ends at roughness 0 and along the surface: where a mirror reflects Fc = (1 − μ)⁵, and all of it. The table's 768 nodes, as above.
+#[test]
+fn a_table_from_end_to_end_has_its_limits() {
+    let nodes = gonio_ibl::Target::Unity.table().nodes(9);
+    let cosines: Vec<f64> = nodes.iter().map(|c| c * c).collect();
+    let table = Dfg::at("ggx", &cosines, &nodes).unwrap();
+    for (x, mu) in cosines.iter().enumerate().skip(1) {
+        let [bias, whole] = table.get(x, 0).map(f64::from);
+        assert!((whole - 1.0).abs() < 2e-3, "{mu}: {whole}");
+        assert!((bias - (1.0 - mu).powi(5)).abs() < 2e-3, "{mu}: {bias}");
+    }
+    assert!(
+        table
+            .values
+            .iter()
+            .flatten()
+            .all(|v| (0.0..=1.001).contains(v))
+    );
+}
+
 #[test]
 fn bad_tables_are_refused() {
     assert!(Dfg::new("lambertian", 4, 4).is_err());
     assert!(Dfg::new("ggx", 0, 4).is_err() && Dfg::new("ggx", 4, 5000).is_err());
-    assert!(Dfg::at("ggx", &[0.0], 4).is_err() && Dfg::at("ggx", &[f64::NAN], 4).is_err());
+    for bad in [0.0, f64::NAN, 1.5] {
+        assert!(Dfg::at("ggx", &[bad], &[0.5]).is_err());
+        assert!(Dfg::at("ggx", &[0.5], &[bad]).is_err());
+    }
+    assert!(Dfg::new("ggx", usize::MAX, 4).is_err() && Dfg::at("ggx", &[], &[0.5]).is_err());
 }
