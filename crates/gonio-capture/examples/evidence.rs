@@ -1,7 +1,7 @@
 //! Prints the table of the book's page on capture: simulated photographs of a known panorama, captured, and their errors.
 //!
-//! `cargo run --release -p gonio-capture --example evidence [PHOTO [STEPS]]`; a photograph is captured too, and timed, its steps explained in the
-//! folder STEPS.
+//! `cargo run --release -p gonio-capture --example evidence [PHOTO [STEPS]]`; with a photograph it is captured instead and the steps timed, and explained
+//! in the folder STEPS.
 
 #[path = "../tests/evidence/mod.rs"]
 mod evidence;
@@ -29,10 +29,11 @@ fn main() {
             println!("{} {:.2} s", pair[0].0, pair[1].1 - pair[0].1);
         }
         println!(
-            "all {:.2} s: {:?}\n",
+            "all {:.2} s: {:?}",
             start.elapsed().as_secs_f64(),
             found.views[0].outline.ball
         );
+        return;
     }
     println!(
         "| photographs | direction, median / 95 % | radiance, median / 95 % | irradiance, worst of 26 normals |"

@@ -11,8 +11,9 @@ use crate::CaptureError;
 use crate::photo::Photo;
 use gonio_image::{RawData, RawImage};
 
-/// Share of the pixels that may be bright in one and dark in the other: of unrelated pictures up to half are, of the same scene few.
-pub const MOST_DIFFERENT: f64 = 0.25;
+/// Share of the pixels that may be bright in one and dark in the other. Of simulated exposures of one view up to 0.03 are, at the quantile that
+/// is nearest to noise; of two views of one landscape, which are alike in sky and ground, 0.2 and more.
+pub const MOST_DIFFERENT: f64 = 0.1;
 /// Share of the pixels on each side of the threshold whose sign is soft.
 const SOFT: f64 = 0.1;
 /// Codes \[1/255] of thresholds: outside a camera has clipped, or has nothing but noise.
@@ -23,6 +24,10 @@ const QUANTILES: [f64; 7] = [0.5, 0.38, 0.62, 0.25, 0.75, 0.14, 0.86];
 const SMALLEST: usize = 24;
 /// Pixels that are compared at most.
 const MOST_PIXELS: usize = 400_000;
+/// Codes \[1/255] over which a sign has to be soft to tell anything: below, noise turns it.
+const TELLING: f32 = 3.0;
+/// Correlation of the signs without which nothing is told.
+const LEAST_CORRELATION: f64 = 0.5;
 /// Pixels without which nothing is told.
 const FEWEST: usize = 64;
 
@@ -99,7 +104,8 @@ fn threshold(a: &Grey, b: &Grey, q: f64, coded: bool) -> Option<[[f32; 2]; 2]> {
         [middle, 0.5 * (high - low)]
     });
     let inside = |[c, soft]: [f32; 2]| {
-        (!coded || (CODES[0]..=CODES[1]).contains(&c)) && soft > 1e-3 * c.abs()
+        let telling = if coded { TELLING } else { 1e-3 * c.abs() };
+        (!coded || (CODES[0]..=CODES[1]).contains(&c)) && soft > telling
     };
     codes.iter().all(|c| inside(*c)).then_some(codes)
 }
@@ -185,7 +191,7 @@ fn shift(a: &Photo, b: &Photo, window: Window) -> Option<Shift> {
         }
         best = Some(here);
     }
-    best.filter(|b| b.firm >= FEWEST)?;
+    let best = best.filter(|b| b.firm >= FEWEST)?;
     // Any two landscapes are bright above and dark below: what is no coincidence agrees at every quantile.
     let [x, y] = &levels[0];
     let different = QUANTILES
@@ -195,7 +201,7 @@ fn shift(a: &Photo, b: &Photo, window: Window) -> Option<Shift> {
         .filter(|s| s.firm >= FEWEST)
         .map(|s| s.different)
         .fold(0.0, f64::max);
-    Some(Shift {
+    (best.correlation >= LEAST_CORRELATION || different > MOST_DIFFERENT).then_some(Shift {
         pixels: at,
         different,
     })

@@ -355,11 +355,15 @@ fn aligned(
             match shift {
                 Some([0, 0]) => {}
                 Some([x, y]) => notes.push(format!(
-                    "{}: {x} pixels to the right and {y} down of {reference}: moved back",
-                    photo.name
+                    "{}: the ball is {} pixels to the {} and {} {} of where {reference} has it: moved back",
+                    photo.name,
+                    x.abs(),
+                    if *x < 0 { "left" } else { "right" },
+                    y.abs(),
+                    if *y < 0 { "above" } else { "below" },
                 )),
                 None => notes.push(format!(
-                    "{}: too dark, too bright or too even to tell whether it is aligned with the others",
+                    "{}: too dark, too bright or too even to tell whether it is aligned with {reference}",
                     photo.name
                 )),
             }

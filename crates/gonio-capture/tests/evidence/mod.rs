@@ -323,6 +323,9 @@ pub fn table() -> Vec<(&'static str, Errors)> {
     let mut row_in =
         |env: &Environment, name, photos: &[Photo], options: &Options, studios: &[Studio]| {
             let found = taken(photos, options).unwrap();
+            for note in &found.notes {
+                eprintln!("{name}: {note}");
+            }
             rows.push((name, compare(&found, studios, env)));
         };
     let sunny = sunny();
