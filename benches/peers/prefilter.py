@@ -7,9 +7,12 @@
 cmgen is in Debian's libfilament-tools. The panorama is 2048 x 1024, a sky with a sun of 1 degree and radiance 6000 over a chequered floor.
 Brute force sums D(h) n.l over every texel (each in 2 x 2 parts, bilinear) in double precision, with N = V = R, for some texels of each
 level. Both are given the same roughness (Filament's), and times are wall seconds of the whole process, the best of three, in turn.
+
+The harmonics' reference is the sum of the basis over the same points; the table's a product rule in double precision over half vectors,
+where the shader looks a texel up: (n.v, roughness) at its middle. `--only-small` compares harmonics and table alone.
 """
 
-import argparse, os, struct, subprocess, time
+import argparse, json, os, struct, subprocess, time
 import numpy as np
 
 
@@ -112,6 +115,97 @@ def brute(lights, axis, alpha):
     return k @ rgb / k.sum()
 
 
+def harmonics(lights):
+    """Irradiance / pi in three bands, times the constants of 1, y, z, x, xy, yz, 3z^2 - 1, zx, x^2 - y^2: Filament's form."""
+    d, omega, rgb = lights
+    x, y, z = d.T
+    one = np.ones_like(x)
+    poly = np.stack([one, y, z, x, x * y, y * z, 3 * z * z - 1, z * x, x * x - y * y])
+    c1, c2, c20 = 3 / (4 * np.pi), 15 / (4 * np.pi), 5 / (16 * np.pi)
+    squared = np.array([1 / (4 * np.pi), c1, c1, c1, c2, c2, c20, c2, c2 / 4])
+    band = np.array([1] + [2 / 3] * 3 + [1 / 4] * 5)
+    weights = omega * (4 * np.pi / omega.sum())
+    return (squared * band)[:, None] * ((poly * weights) @ rgb)
+
+
+def cmgen_harmonics(path):
+    rows = []
+    for line in open(path):
+        inside = line[line.find("(") + 1 : line.find(")")] if "(" in line else ""
+        parts = inside.split(",")
+        if len(parts) == 3:
+            rows.append([float(p) for p in parts])
+    return np.array(rows)
+
+
+def table(mu, roughness, nodes=1024):
+    """(bias, whole) of GGX with the correlated Smith masking: the integral over half vectors drawn by D(h) n.h, midpoints in u and the azimuth."""
+    a2 = roughness**4
+    # Crowded at both ends: s^2 (3 - 2 s).
+    s = (np.arange(nodes) + 0.5) / nodes
+    u, w = s * s * (3 - 2 * s), 6 * s * (1 - s) / nodes
+    cos_h = np.sqrt((1 - u) / (1 + (a2 - 1) * u))
+    sin_h = np.sqrt(np.maximum(1 - cos_h**2, 0))
+    phi = np.pi * (np.arange(nodes) + 0.5) / nodes
+    v = np.array([np.sqrt(1 - mu * mu), 0, mu])
+    vh = v[0] * sin_h[:, None] * np.cos(phi) + v[2] * cos_h[:, None]
+    nl = 2 * vh * cos_h[:, None] - mu
+    ok = (nl > 0) & (vh > 0)
+    nl, vh = np.where(ok, nl, 1), np.where(ok, vh, 1)
+    smith = 0.5 / (nl * np.sqrt(mu * mu * (1 - a2) + a2) + mu * np.sqrt(nl * nl * (1 - a2) + a2))
+    f = np.where(ok, 4 * smith * nl * vh / cos_h[:, None], 0) * w[:, None] / nodes
+    return (f * (1 - vh) ** 5).sum(), f.sum()
+
+
+def exr(path):
+    import mitsuba as mi
+
+    mi.set_variant("scalar_rgb")
+    return np.array(mi.Bitmap(path).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
+
+
+def small(ours, work, hdr, image):
+    """Errors of harmonics and table."""
+    truth = harmonics(points(image))
+    found = np.array(json.load(open(os.path.join(ours, "harmonics.json")))["coefficients"])
+    print("harmonics, three bands: largest difference by band, relative to the first coefficient")
+    files = {"cmgen": "no", "cmgen, as it is by default": "auto"}
+    other = {"Gonio": found}
+    for name, window in files.items():
+        path = os.path.join(work, f"sh-{window}.txt")
+        subprocess.run(["cmgen", "-q", "--sh=3", "--sh-irradiance", "--sh-shader", f"--sh-window={window}", f"--sh-output={path}", hdr], check=True)
+        other[name] = cmgen_harmonics(path)
+    for name, c in other.items():
+        # cmgen mirrors its axes: the signs that fit are its convention.
+        if name != "Gonio":
+            best = None
+            for flip in [(1, 1), (1, -1), (-1, 1), (-1, -1)]:
+                sx, sz = flip
+                sign = np.array([1, 1, sz, sx, sx, sz, 1, sx * sz, 1])
+                e = np.abs(c * sign[:, None] - truth).max()
+                if best is None or e < best[0]:
+                    best = (e, sign)
+            c = c * best[1][:, None]
+        e = np.abs(c - truth) / truth[0]
+        print(f"  {name:28} L0 {e[0].max():.1e}  L1 {e[1:4].max():.1e}  L2 {e[4:].max():.1e}")
+    a, b = exr(os.path.join(ours, "dfg.exr")), exr(os.path.join(work, "dfg.exr"))
+    n = a.shape[0]
+    rng = np.random.default_rng(3)
+    rows = {"cmgen": [], "cmgen, its rows where it means them": [], "Gonio": []}
+    for x, y in rng.integers(0, n, (200, 2)):
+        mu, low = (x + 0.5) / n, (n - y - 0.5) / n
+        exact = np.array(table(mu, low))
+        rows["Gonio"].append(a[y, x, :2] - exact)
+        rows["cmgen"].append(b[y, x, :2] - exact)
+        rows["cmgen, its rows where it means them"].append(b[y, x, :2] - np.array(table(mu, min((n - y + 0.5) / n, 1))))
+    print("table, bias and whole, over 200 texels: mean and largest absolute difference")
+    for name, e in rows.items():
+        e = np.abs(np.array(e))
+        print(f"  {name:36} mean {e.mean():.2e}  largest {e.max():.2e}")
+    converged = max(abs(np.array(table(m, r)) - np.array(table(m, r, 2048))).max() for m in (0.02, 0.3, 0.9) for r in (0.05, 0.4, 1))
+    print(f"  the reference itself: twice as many nodes change it by {converged:.1e} at most")
+
+
 def timed(command, runs=3):
     best = 1e9
     for _ in range(runs):
@@ -126,12 +220,17 @@ def main():
     parser.add_argument("--gonio", default="target/release/examples/prefilter")
     parser.add_argument("--work", default="/tmp/prefilter")
     parser.add_argument("--texels", type=int, default=24)
+    parser.add_argument("--only-small", action="store_true")
     a = parser.parse_args()
     os.makedirs(a.work, exist_ok=True)
     hdr = os.path.join(a.work, "sky.hdr")
     image = write_hdr(hdr, panorama())
     ours, theirs = os.path.join(a.work, "gonio"), os.path.join(a.work, "cmgen")
     os.makedirs(ours, exist_ok=True)
+    if a.only_small:
+        subprocess.run([a.gonio, hdr, ours], check=True, capture_output=True)
+        subprocess.run(["cmgen", "-q", "--size=128", f"--ibl-dfg={a.work}/dfg.exr", "--ibl-dfg-multiscatter"], check=True)
+        return small(ours, a.work, hdr, image)
     t = {}
     best = {"cmgen": 1e9, "gonio": 1e9}
     for _ in range(3):
@@ -148,6 +247,7 @@ def main():
           f"{best['cmgen'] / best['gonio']:.1f} times as fast")
     print(f"harmonics: cmgen {t['sh']:.2f} s, Gonio {own['load']} s to load + {own['harmonics']} s")
     print(f"table: cmgen {t['dfg']:.2f} s, Gonio {own['table']} s")
+    small(ours, a.work, hdr, image)
     mine = ktx2(os.path.join(ours, "specular.ktx2"))
     other = cmgen_levels(theirs, "sky", len(mine))
     # cmgen mirrors its cubes and turns its panoramas by its own rule: the reflection that fits level 0 best is its convention.
