@@ -468,7 +468,7 @@ fn a_real_balls_outline_is_found() {
         height: 64,
         ..Options::default()
     };
-    let found = taken(&[photo], &small).unwrap();
+    let found = taken(std::slice::from_ref(&photo), &small).unwrap();
     let ball = &found.views[0].outline;
     let [x, y] = ball.ball.centre();
     assert!(
@@ -479,4 +479,22 @@ fn a_real_balls_outline_is_found() {
         (ball.ball.radius() - 1980.0).abs() < 2.0 && ball.rms < 1.0,
         "{ball:?}"
     );
+    // The room in a mirror is not an exposure of the room.
+    let RawData::U8(codes) = &photo.picture.data else {
+        panic!("a JPEG of 8 bits");
+    };
+    let width = photo.picture.width;
+    let rows = codes
+        .chunks(width)
+        .flat_map(|row| row.iter().rev().copied());
+    let picture = RawImage {
+        data: RawData::U8(rows.collect()),
+        ..photo.picture.clone()
+    };
+    let mirrored = Photo::new("mirrored", picture, photo.exif);
+    let circle = [2042.0, 2053.0, 1980.0];
+    let error =
+        gonio_capture::align::align(&[photo, mirrored], &[1.0, 0.5], Some(circle)).unwrap_err();
+    assert!(matches!(error, CaptureError::NotAligned { .. }), "{error}");
+    eprintln!("{error}");
 }
