@@ -4,8 +4,8 @@
 
 use gonio_num::{Real, Vec3};
 use gonio_plot::{
-    Channel, Draw, Figure, Function, Options, Picture, PlotError, ScaleKind, albedo, cartesian,
-    difference, lobe3d, pictures, polar, slice, sphere,
+    Axes, Channel, Draw, Figure, Function, Line, Options, Picture, PlotError, ScaleKind, albedo,
+    cartesian, difference, lobe3d, pictures, polar, slice, sphere,
 };
 use std::f64::consts::PI;
 
@@ -498,4 +498,66 @@ fn plots_are_small() {
         let figure = plot(&[shiny()], &Options::default()).unwrap();
         assert!(figure.svg().len() < most, "{name}: {}", figure.svg().len());
     }
+}
+
+/// A line of slope 1 and one of decades, read back from the file: both are straight in their scale.
+#[test]
+fn lines_are_where_their_points_are() {
+    let axes = Axes {
+        subtitle: "made up",
+        x: "code",
+        x_ends: [0.0, 100.0],
+        x_step: 20.0,
+        y: "exposure",
+        channels: false,
+    };
+    let line = |name: &str, f: &dyn Fn(f64) -> f64| Line {
+        name: name.into(),
+        points: (0..=100).map(|x| [f64::from(x), f(f64::from(x))]).collect(),
+    };
+    for (scale, f) in [
+        (ScaleKind::Linear, (|x| 2.0 * x) as fn(f64) -> f64),
+        (ScaleKind::Log, |x| Real::exp(0.05 * x)),
+    ] {
+        let options = Options {
+            scale,
+            title: Some("A line".into()),
+            ..Options::default()
+        };
+        let figure = gonio_plot::lines(&[line("straight", &f)], &axes, &options).unwrap();
+        // The legend's sample is a line of two points.
+        let found = lines(figure.svg(), FIRST);
+        let drawn = found.iter().max_by_key(|l| l.len()).unwrap();
+        let ([a, b], [c, d]) = (drawn[0], drawn[drawn.len() - 1]);
+        assert!(c > a + 300.0 && d < b, "{drawn:?}");
+        for [x, y] in drawn {
+            // Hundredths of a pixel.
+            assert!((b + (d - b) * (x - a) / (c - a) - y).abs() < 0.05);
+        }
+        assert!(figure.svg().contains("exposure") && figure.svg().contains("straight"));
+    }
+    // What has no logarithm leaves a gap.
+    let broken = line("broken", &|x| {
+        if (40.0..60.0).contains(&x) {
+            0.0
+        } else {
+            1.0 + x
+        }
+    });
+    let log = Options {
+        scale: ScaleKind::Log,
+        ..Options::default()
+    };
+    let figure = gonio_plot::lines(&[broken], &axes, &log).unwrap();
+    let pieces = lines(figure.svg(), FIRST);
+    assert_eq!(pieces.iter().filter(|l| l.len() > 2).count(), 2);
+    assert!(matches!(
+        gonio_plot::lines(&[], &axes, &log),
+        Err(PlotError::Count { .. })
+    ));
+    let backwards = Axes {
+        x_ends: [1.0, 0.0],
+        ..axes
+    };
+    assert!(gonio_plot::lines(&[line("a", &|x| x)], &backwards, &log).is_err());
 }
