@@ -2,7 +2,7 @@
 
 use crate::ImageError;
 use std::fs::{File, OpenOptions};
-use std::io::{self, Cursor, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Cursor, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,10 +14,43 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// # Errors
 /// [`ImageError::Io`] with what could not be done.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), ImageError> {
-    let mut pending = Pending::create(path)?;
-    pending
-        .write_all(bytes)
+    write_with(path, |file| file.write_all(bytes))
+}
+
+/// As [`write_file`](write()), of what `content` writes, bit by bit.
+///
+/// # Errors
+/// As [`write_file`](write()).
+pub fn write_with(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), ImageError> {
+    fill(path, Pending::create(path)?, content)
+}
+
+/// As [`write_file_with`](write_with), for a file that one process alone writes again and again: the temporary name is always the same,
+/// so that a process that is killed leaves one such file at most, and the next one takes it over.
+///
+/// # Errors
+/// As [`write_file`](write()).
+pub fn rewrite_with(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), ImageError> {
+    let pending = Pending::create_as(path, Temporary::of(path)?)?;
+    fill(path, pending, content)
+}
+
+fn fill(
+    path: &Path,
+    mut pending: Pending,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), ImageError> {
+    let mut buffered = BufWriter::with_capacity(1 << 16, &mut pending);
+    content(&mut buffered)
+        .and_then(|()| buffered.flush())
         .map_err(|e| ImageError::io(path, "write it", e))?;
+    drop(buffered);
     pending.put_in_place()
 }
 
@@ -35,16 +68,16 @@ enum Target {
 
 impl Pending {
     pub fn create(path: &Path) -> Result<Self, ImageError> {
+        Self::create_as(path, Temporary::beside(path)?)
+    }
+
+    fn create_as(path: &Path, temporary: Temporary) -> Result<Self, ImageError> {
         let special = std::fs::metadata(path).is_ok_and(|m| !m.is_file() && !m.is_dir());
         let target = if special {
             Target::Memory(Cursor::default())
         } else {
-            let temporary = Temporary::beside(path)?;
-            let file = File::options()
-                .read(true)
-                .write(true)
-                .create_new(true)
-                .open(&temporary.path)
+            let file = temporary
+                .create()
                 .map_err(|e| ImageError::io(path, "create a file in its folder", e))?;
             Target::Beside(file, temporary)
         };
@@ -110,23 +143,50 @@ impl Seek for Pending {
 struct Temporary {
     path: PathBuf,
     in_place: bool,
+    /// Whether a file of this name is one that was left behind.
+    taken_over: bool,
 }
 
 impl Temporary {
+    /// A name that no other file has.
     fn beside(path: &Path) -> Result<Self, ImageError> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
-        let name = path.file_name().ok_or_else(|| {
-            ImageError::parameter(format!("{}: names no file to write", path.display()))
-        })?;
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        // Short, whatever the length of the name: a name may be as long as the file system allows.
-        let mut stem: String = name.to_string_lossy().chars().take(32).collect();
-        stem.insert(0, '.');
+        let stem = stem(path)?;
         Ok(Self {
             path: path.with_file_name(format!("{stem}.{}.{count}.tmp", std::process::id())),
             in_place: false,
+            taken_over: false,
         })
     }
+
+    /// The same name every time.
+    fn of(path: &Path) -> Result<Self, ImageError> {
+        Ok(Self {
+            path: path.with_file_name(format!("{}.tmp", stem(path)?)),
+            in_place: false,
+            taken_over: true,
+        })
+    }
+
+    fn create(&self) -> io::Result<File> {
+        let mut options = File::options();
+        options.read(true).write(true);
+        match self.taken_over {
+            true => options.create(true).truncate(true),
+            false => options.create_new(true),
+        };
+        options.open(&self.path)
+    }
+}
+
+/// How a temporary name begins: short, whatever the length of the name, since a name may be as long as the file system allows.
+fn stem(path: &Path) -> Result<String, ImageError> {
+    let name = path.file_name().ok_or_else(|| {
+        ImageError::parameter(format!("{}: names no file to write", path.display()))
+    })?;
+    let start: String = name.to_string_lossy().chars().take(32).collect();
+    Ok(format!(".{start}"))
 }
 
 impl Drop for Temporary {
@@ -153,6 +213,38 @@ mod tests {
         write(&path, b"first").unwrap();
         write(&path, b"second").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"second");
+        assert_eq!(entries(folder.path()), 1);
+    }
+
+    /// What stood there stays, and nothing is left behind.
+    #[test]
+    fn a_content_that_fails_changes_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.bin");
+        write(&path, b"first").unwrap();
+        let half = |file: &mut dyn Write| {
+            file.write_all(&[0; 100_000])?;
+            Err(io::ErrorKind::StorageFull.into())
+        };
+        assert!(matches!(
+            write_with(&path, half),
+            Err(ImageError::Io { .. })
+        ));
+        assert!(matches!(
+            rewrite_with(&path, half),
+            Err(ImageError::Io { .. })
+        ));
+        assert_eq!(std::fs::read(&path).unwrap(), b"first");
+        assert_eq!(entries(folder.path()), 1);
+    }
+
+    #[test]
+    fn what_a_killed_process_left_is_taken_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.bin");
+        std::fs::write(folder.path().join(".a.bin.tmp"), [1; 1000]).unwrap();
+        rewrite_with(&path, |file| file.write_all(b"whole")).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"whole");
         assert_eq!(entries(folder.path()), 1);
     }
 

@@ -56,7 +56,9 @@ mod scan;
 pub mod srgb;
 pub mod tonemap;
 
-pub use atomic::write as write_file;
+pub use atomic::{
+    rewrite_with as rewrite_file_with, write as write_file, write_with as write_file_with,
+};
 pub use cube::CubeMap;
 pub use error::ImageError;
 pub use exr::prelude::f16;

@@ -1,6 +1,8 @@
 //! [`RenderError`].
 
-/// What can stop a rendering before it starts.
+use std::path::PathBuf;
+
+/// What can stop a rendering before it starts, and what can be wrong with the files that it begins from.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
@@ -28,4 +30,37 @@ pub enum RenderError {
         /// Memory that is allowed.
         limit_mib: u64,
     },
+    /// The operating system refused a file.
+    #[error("{}: cannot {action}: {source}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What was tried.
+        action: &'static str,
+        /// The reason.
+        source: std::io::Error,
+    },
+    /// A file is no part of a picture, or a damaged one.
+    #[error("{}, {place}: found {found}, expected {expected}", path.display())]
+    Part {
+        /// The file.
+        path: PathBuf,
+        /// Where in it.
+        place: String,
+        /// What is there.
+        found: String,
+        /// What should be there.
+        expected: String,
+    },
+    /// Parts that do not belong together, or do not make a whole.
+    #[error("{}: {what}", path.display())]
+    Merge {
+        /// The part.
+        path: PathBuf,
+        /// What differs, from which other part, or what is missing.
+        what: String,
+    },
+    /// A file could not be written.
+    #[error(transparent)]
+    Image(#[from] gonio_image::ImageError),
 }

@@ -1,89 +1,16 @@
 //! [`Film`]: per-pixel sums of radiance samples, and the layers made of them.
 
+mod binned;
+mod pixel;
+pub(crate) mod record;
+
+pub use pixel::{FilmSample, FirstSurface, PixelSums};
+
 use crate::RenderError;
-use gonio_image::{Channel, ChannelData, Image, Layers};
-
-/// The sums over the samples of one pixel.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct PixelSums {
-    /// Σ L.
-    pub radiance: [f64; 3],
-    /// Σ L².
-    pub radiance_squared: [f64; 3],
-    /// Σ of the first surface's albedo.
-    pub albedo: [f32; 3],
-    /// Σ of the first surface's shading normal, world space.
-    pub normal: [f32; 3],
-    /// Σ of the distance to the first surface, over the samples that hit one.
-    pub depth: f32,
-    /// Samples that hit a surface.
-    pub hits: u32,
-    /// Samples taken, rejected ones included.
-    pub samples: u32,
-}
-
-impl PixelSums {
-    /// Mean radiance; 0 without samples.
-    pub fn mean(&self) -> [f64; 3] {
-        let n = f64::from(self.samples.max(1));
-        self.radiance.map(|s| s / n)
-    }
-
-    /// Variance of the mean, by the sample variance s² / n; ∞ below two samples.
-    pub fn variance_of_mean(&self) -> [f64; 3] {
-        if self.samples < 2 {
-            return [f64::INFINITY; 3];
-        }
-        let n = f64::from(self.samples);
-        std::array::from_fn(|c| {
-            let mean = self.radiance[c] / n;
-            let s2 = (self.radiance_squared[c] / n - mean * mean).max(0.0) * n / (n - 1.0);
-            s2 / n
-        })
-    }
-
-    fn add_sample(&mut self, sample: &FilmSample) {
-        self.samples += 1;
-        for c in 0..3 {
-            let l = f64::from(sample.radiance[c]);
-            self.radiance[c] += l;
-            self.radiance_squared[c] += l * l;
-        }
-        if let Some(first) = &sample.first {
-            self.hits += 1;
-            self.depth += first.depth;
-            for c in 0..3 {
-                self.albedo[c] += first.albedo[c];
-                self.normal[c] += first.normal[c];
-            }
-        }
-    }
-}
-
-/// What the auxiliary layers keep of the first surface that a camera ray meets.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FirstSurface {
-    /// Approximate directional–hemispherical reflectance.
-    pub albedo: [f32; 3],
-    /// Shading normal, world space, unit.
-    pub normal: [f32; 3],
-    /// Distance along the ray.
-    pub depth: f32,
-    /// Index of the material.
-    pub material: u32,
-}
-
-/// One sample of a pixel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FilmSample {
-    /// Radiance along the camera ray.
-    pub radiance: [f32; 3],
-    /// The first surface met, if any.
-    pub first: Option<FirstSurface>,
-}
+use gonio_image::{Channel, ChannelData, Chromaticities, Image, Layers};
 
 /// Samples that were not finite or negative, kept out of the image.
-#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rejected {
     /// How many.
     pub count: u64,
@@ -92,7 +19,7 @@ pub struct Rejected {
 }
 
 /// Where a rejected sample was found.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RejectedSample {
     /// Column and row of the pixel.
     pub pixel: [u32; 2],
@@ -107,7 +34,8 @@ pub struct RejectedSample {
 impl Rejected {
     /// Counts one more sample, or those of another, keeping the first in the order of (sample, row, column).
     pub fn merge(&mut self, other: Self) {
-        self.count += other.count;
+        // Counts read from files may be any.
+        self.count = self.count.saturating_add(other.count);
         let order = |r: &RejectedSample| (r.sample, r.pixel[1], r.pixel[0]);
         self.first = match (self.first.take(), other.first) {
             (Some(a), Some(b)) => Some(if order(&b) < order(&a) { b } else { a }),
@@ -134,6 +62,17 @@ impl Film {
     /// # Errors
     /// A side of 0 pixels, or sums of more than 32 GiB.
     pub fn new(width: u32, height: u32) -> Result<Self, RenderError> {
+        Self::check(width, height)?;
+        Ok(Self {
+            width,
+            height,
+            pixels: vec![PixelSums::default(); width as usize * height as usize],
+            rejected: Rejected::default(),
+        })
+    }
+
+    /// Fails as [`Film::new`] does, without making one.
+    pub(crate) fn check(width: u32, height: u32) -> Result<(), RenderError> {
         if width == 0 || height == 0 {
             return Err(RenderError::Parameter {
                 option: "size",
@@ -152,12 +91,7 @@ impl Film {
                 limit_mib: LIMIT_BYTES >> 20,
             });
         }
-        Ok(Self {
-            width,
-            height,
-            pixels: vec![PixelSums::default(); count as usize],
-            rejected: Rejected::default(),
-        })
+        Ok(())
     }
 
     /// Pixels across.
@@ -184,6 +118,9 @@ impl Film {
     /// The rows as slices that different threads may write.
     pub(crate) fn rows_mut(&mut self) -> std::slice::ChunksExactMut<'_, PixelSums> {
         self.pixels.chunks_exact_mut(self.width as usize)
+    }
+    pub(crate) fn pixels_mut(&mut self) -> &mut [PixelSums] {
+        &mut self.pixels
     }
     pub(crate) fn note_rejected(&mut self, rejected: Rejected) {
         self.rejected.merge(rejected);
@@ -231,7 +168,6 @@ impl Film {
     /// Depth is the mean over the samples that hit a surface, ∞ where none did; the normal is the unnormalised mean; the
     /// variance is that of the mean.
     pub fn layers(&self, metadata: Vec<(String, String)>) -> Layers {
-        let n = |p: &PixelSums| p.samples.max(1) as f32;
         let mut channels = Vec::new();
         let mut float = |name: &str, value: &dyn Fn(&PixelSums) -> f32| {
             channels.push(Channel {
@@ -241,21 +177,15 @@ impl Film {
         };
         for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
             float(name, &|p| p.mean()[c] as f32);
-            float(&format!("albedo.{name}"), &|p| p.albedo[c] / n(p));
+            float(&format!("albedo.{name}"), &|p| p.albedo()[c]);
             float(&format!("variance.{name}"), &|p| {
                 p.variance_of_mean()[c] as f32
             });
         }
         for (c, name) in ["X", "Y", "Z"].into_iter().enumerate() {
-            float(&format!("normal.{name}"), &|p| p.normal[c] / n(p));
+            float(&format!("normal.{name}"), &|p| p.normal()[c]);
         }
-        float("depth.Z", &|p| {
-            if p.hits == 0 {
-                f32::INFINITY
-            } else {
-                p.depth / p.hits as f32
-            }
-        });
+        float("depth.Z", &PixelSums::depth);
         channels.push(Channel {
             name: "samples.count".into(),
             samples: ChannelData::Uint(self.pixels.iter().map(|p| p.samples).collect()),
@@ -263,6 +193,7 @@ impl Film {
         Layers {
             channels,
             metadata,
+            chromaticities: Some(Chromaticities::REC709),
             ..Layers::new(self.width as usize, self.height as usize)
         }
     }
@@ -301,7 +232,7 @@ pub(crate) fn add(
         });
         sample.radiance = [0.0; 3];
     }
-    sums.add_sample(&sample);
+    sums.add(&sample);
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::film::Film;
 use crate::pass::take_pass;
-use crate::{Integrator, PixelFilter, RayCounts, RenderError};
+use crate::{Exposure, Integrator, PixelFilter, RayCounts, RenderError};
 use gonio_radiometry::sequence::SamplerKind;
 use gonio_scene::{Camera, Scene};
 use std::ops::ControlFlow;
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// When a rendering is finished: at the first target that is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Target {
-    /// Samples per pixel.
+    /// Samples per pixel: the index after the last one.
     pub samples: u32,
     /// Wall-clock time.
     pub time: Option<Duration>,
@@ -110,66 +110,149 @@ pub fn render(
     options: &RenderOptions,
     mut progress: impl FnMut(&Progress, &Film) -> ControlFlow<()>,
 ) -> Result<(Film, Stop), RenderError> {
+    let mut exposure = Exposure::new(options.width, options.height, 0)?;
+    let stop = expose(scene, camera, options, &mut exposure, |report, exposure| {
+        progress(report, &exposure.film)
+    })?;
+    Ok((exposure.film, stop))
+}
+
+/// As [`render`], from the last sample of `exposure` on: [`Target::samples`] is the index after the last sample to take, and time is that
+/// of `exposure` as well. Whatever `exposure` began from, and however often it was interrupted, the sums are those of its range of samples.
+///
+/// # Errors
+/// As [`render`]; an exposure of another size, or one that has more samples than the target.
+pub fn expose(
+    scene: &Scene,
+    camera: &Camera,
+    options: &RenderOptions,
+    exposure: &mut Exposure,
+    mut progress: impl FnMut(&Progress, &Exposure) -> ControlFlow<()>,
+) -> Result<Stop, RenderError> {
+    check(options, exposure)?;
     let target = options.target;
-    if target.samples == 0 {
-        return Err(RenderError::Parameter {
-            option: "samples",
-            found: "0".into(),
-            expected: "at least 1 sample per pixel",
-        });
-    }
-    if let Some(noise) = target.noise
-        && !(noise > 0.0 && noise.is_finite())
-    {
-        return Err(RenderError::Parameter {
-            option: "noise",
-            found: noise.to_string(),
-            expected: "a positive relative error such as 0.02",
-        });
-    }
-    let mut film = Film::new(options.width, options.height)?;
-    let start = Instant::now();
-    let mut rays = RayCounts::default();
-    let mut done = 0_u32;
-    let mut pass = 1_u32;
-    let mut pass_ends = pass;
+    let (start, before) = (Instant::now(), exposure.elapsed);
+    let (first, went_on_from) = (exposure.samples.start, exposure.samples.end);
+    let mut pass_ends = first.saturating_add(end_of_pass(went_on_from - first));
     let mut piece = 1;
+    let quiet = |exposure: &Exposure, noise: f64| {
+        let done = exposure.samples.end - first;
+        done >= LEAST_SAMPLES_FOR_NOISE
+            && done == start_of_pass(done)
+            && target.noise.is_some_and(|n| noise <= n)
+    };
+    let stop = |exposure: &Exposure, noise: f64| {
+        if exposure.samples.end == target.samples {
+            Some(Stop::Samples)
+        } else if quiet(exposure, noise) {
+            Some(Stop::Noise)
+        } else {
+            let late = target.time.is_some_and(|t| exposure.elapsed >= t);
+            late.then_some(Stop::Time)
+        }
+    };
+    if !exposure.samples.is_empty()
+        && let Some(stop) = stop(exposure, exposure.film.noise())
+    {
+        return Ok(stop);
+    }
     loop {
+        let done = exposure.samples.end;
         let until = done
             .saturating_add(piece)
             .min(pass_ends)
             .min(target.samples);
-        rays += take_pass(scene, camera, options, &mut film, done..until);
-        done = until;
-        let pass_is_whole = done == pass_ends;
-        if pass_is_whole {
-            pass = (pass * 2).min(LARGEST_PASS);
-            pass_ends = pass_ends.saturating_add(pass);
+        exposure.rays += take_pass(scene, camera, options, &mut exposure.film, done..until);
+        exposure.samples.end = until;
+        exposure.elapsed = before + start.elapsed();
+        if until == pass_ends {
+            pass_ends = first.saturating_add(end_of_pass(until - first));
         }
-
         let report = Progress {
-            samples: done,
-            of: target.samples,
-            rays,
-            elapsed: start.elapsed(),
-            noise: film.noise(),
+            samples: until - first,
+            of: target.samples - first,
+            rays: exposure.rays,
+            elapsed: exposure.elapsed,
+            noise: exposure.film.noise(),
         };
-        let asked = progress(&report, &film);
-        let quiet = pass_is_whole && target.noise.is_some_and(|n| report.noise <= n);
-        let stop = if done == target.samples {
-            Stop::Samples
-        } else if asked.is_break() {
-            Stop::Interrupted
-        } else if quiet && done >= LEAST_SAMPLES_FOR_NOISE {
-            Stop::Noise
-        } else if target.time.is_some_and(|t| report.elapsed >= t) {
-            Stop::Time
-        } else {
-            let left = target.time.map(|t| t.saturating_sub(report.elapsed));
-            piece = samples_within(left.unwrap_or(LONGEST_PIECE), done, report.elapsed);
-            continue;
-        };
-        return Ok((film, stop));
+        let asked = progress(&report, exposure);
+        match stop(exposure, report.noise) {
+            Some(stop @ Stop::Samples) => return Ok(stop),
+            _ if asked.is_break() => return Ok(Stop::Interrupted),
+            Some(stop) => return Ok(stop),
+            None => {}
+        }
+        let left = target.time.map(|t| t.saturating_sub(report.elapsed));
+        piece = samples_within(
+            left.unwrap_or(LONGEST_PIECE),
+            until - went_on_from,
+            start.elapsed(),
+        );
+    }
+}
+
+fn check(options: &RenderOptions, exposure: &Exposure) -> Result<(), RenderError> {
+    let target = options.target;
+    let taken = &exposure.samples;
+    let fault = |option, found: String, expected| {
+        Err(RenderError::Parameter {
+            option,
+            found,
+            expected,
+        })
+    };
+    if target.samples <= taken.start {
+        return fault(
+            "samples",
+            target.samples.to_string(),
+            "at least 1 sample per pixel",
+        );
+    }
+    if target.samples < taken.end {
+        return fault(
+            "samples",
+            format!("{}, after {} that are taken", target.samples, taken.end),
+            "at least as many as are taken",
+        );
+    }
+    if let Some(noise) = target.noise
+        && !(noise > 0.0 && noise.is_finite())
+    {
+        return fault(
+            "noise",
+            noise.to_string(),
+            "a positive relative error such as 0.02",
+        );
+    }
+    let film = &exposure.film;
+    if (film.width(), film.height()) != (options.width, options.height) {
+        return fault(
+            "size",
+            format!("{}×{}", options.width, options.height),
+            "the size of the film",
+        );
+    }
+    Ok(())
+}
+
+/// The number of samples at the end of the pass in which sample `k` is taken: 1, 3, 7, 15, then 16 more each time.
+fn end_of_pass(k: u32) -> u32 {
+    const DOUBLING: u32 = LARGEST_PASS - 1;
+    if k < DOUBLING {
+        (k + 2).next_power_of_two().max(2) - 1
+    } else {
+        let more = (k - DOUBLING) / LARGEST_PASS + 1;
+        DOUBLING.saturating_add(more.saturating_mul(LARGEST_PASS))
+    }
+}
+
+/// The number of samples at the beginning of that pass: `k` itself, if a pass ends before it.
+fn start_of_pass(k: u32) -> u32 {
+    const DOUBLING: u32 = LARGEST_PASS - 1;
+    if k < DOUBLING {
+        end_of_pass(k) / 2
+    } else {
+        DOUBLING + (k - DOUBLING) / LARGEST_PASS * LARGEST_PASS
     }
 }
 
@@ -183,6 +266,24 @@ fn samples_within(left: Duration, done: u32, elapsed: Duration) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn passes_double_up_to_sixteen() {
+        let mut ends = vec![0];
+        while ends[ends.len() - 1] < 60 {
+            let done = ends[ends.len() - 1];
+            assert_eq!(start_of_pass(done), done);
+            ends.push(end_of_pass(done));
+        }
+        assert_eq!(ends, [0, 1, 3, 7, 15, 31, 47, 63]);
+        // Within a pass as at its beginning.
+        for k in 0..60 {
+            let end = ends.iter().copied().find(|e| *e > k).unwrap();
+            let start = ends.iter().copied().rfind(|e| *e <= k).unwrap();
+            assert_eq!((start_of_pass(k), end_of_pass(k)), (start, end), "{k}");
+        }
+        assert_eq!(end_of_pass(u32::MAX), u32::MAX);
+    }
 
     #[test]
     fn pieces_fit_the_time_that_is_left() {

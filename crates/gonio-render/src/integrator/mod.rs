@@ -96,7 +96,7 @@ impl Integrator {
 }
 
 /// How many rays were followed.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct RayCounts {
     /// Rays to the nearest surface.
     pub nearest: u64,
@@ -107,14 +107,15 @@ pub struct RayCounts {
 impl RayCounts {
     /// All rays.
     pub fn total(&self) -> u64 {
-        self.nearest + self.shadow
+        self.nearest.saturating_add(self.shadow)
     }
 }
 
 impl AddAssign for RayCounts {
     fn add_assign(&mut self, other: Self) {
-        self.nearest += other.nearest;
-        self.shadow += other.shadow;
+        // Counts read from files may be any.
+        self.nearest = self.nearest.saturating_add(other.nearest);
+        self.shadow = self.shadow.saturating_add(other.shadow);
     }
 }
 
