@@ -25,7 +25,7 @@ mod read;
 mod write;
 
 pub use merge::Parts;
-pub use read::{Opened, open};
+pub use read::{Opened, is_one, open};
 pub use write::{write, write_alone};
 
 use crate::{Film, Identity, RayCounts, Rejected, RejectedSample, RenderError};

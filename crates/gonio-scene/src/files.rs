@@ -3,6 +3,7 @@
 use crate::SceneError;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -15,6 +16,18 @@ pub enum Files {
     Disk,
     /// Names and contents; a scene refers to them by relative paths as it would to files in one folder.
     Memory(Arc<BTreeMap<PathBuf, Cow<'static, [u8]>>>),
+    /// The file system, and somebody who is told each file that is read.
+    Watched(Watch),
+}
+
+/// Who is told the path and the bytes of each file that is read.
+#[derive(Clone)]
+pub struct Watch(pub Arc<dyn Fn(&Path, &[u8]) + Send + Sync>);
+
+impl fmt::Debug for Watch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Watch")
+    }
 }
 
 impl Files {
@@ -45,6 +58,11 @@ impl Files {
             Self::Disk => {
                 check(std::fs::metadata(path).map_err(io)?.len())?;
                 std::fs::read(path).map_err(io)
+            }
+            Self::Watched(Watch(tell)) => {
+                let bytes = Self::Disk.read(path, max_bytes)?;
+                tell(path, &bytes);
+                Ok(bytes)
             }
             Self::Memory(files) => {
                 let bytes = files

@@ -46,6 +46,18 @@ pub fn open(path: &Path) -> Result<Opened, RenderError> {
     Opened::of(BufReader::with_capacity(1 << 16, file), length, path)
 }
 
+/// Whether a file begins as parts do; not if it can't be read.
+pub fn is_one(path: &Path) -> bool {
+    let mut start = [0; MAGIC.len()];
+    let read = match std::fs::metadata(path) {
+        Ok(metadata) if metadata.is_file() => {
+            File::open(path).and_then(|mut file| file.read_exact(&mut start))
+        }
+        _ => return false,
+    };
+    read.is_ok() && start == MAGIC
+}
+
 impl<R: Read> Opened<R> {
     /// As [`open`], of anything that can be read and has `length` bytes; `path` names it in errors.
     ///

@@ -22,6 +22,12 @@ pub(super) fn check(path: &Path) -> Result<(), Failure> {
     writable(path)
 }
 
+/// Fails unless `path` has the extension of a picture or of a part of one and lies in a folder that takes new files.
+pub(super) fn check_product(path: &Path) -> Result<(), Failure> {
+    check_extension(path, &["exr", "hdr", "png", "gonio"], "pictures and parts")?;
+    writable(path)
+}
+
 /// Fails unless the extension of `path` is one of those that `things` can be written with.
 pub(super) fn check_extension(
     path: &Path,

@@ -4,6 +4,7 @@ use super::failure::Failure;
 use super::parse;
 use gonio_env::{Environment, Layout, Proxy};
 use gonio_scene::{LoadOptions, Scene};
+use std::path::{Path, PathBuf};
 
 /// Which light comes from infinitely far away.
 #[derive(clap::Args)]
@@ -52,11 +53,64 @@ impl EnvironmentArguments {
         Ok(())
     }
 
+    /// Everything that was asked for but the names of files, in words, and the files in a fixed order.
+    pub fn described(&self) -> (String, Vec<PathBuf>) {
+        let PanoramaArguments {
+            env_layout,
+            env_convention,
+            env_sanitize,
+            env_repair,
+        } = &self.reading;
+        let (name, files) = match self.env.as_deref() {
+            None => ("none", Vec::new()),
+            Some(text) if text.starts_with("uniform:") || text.starts_with("sky:") => {
+                (text, Vec::new())
+            }
+            Some(text) => ("files", files_of(text)),
+        };
+        let text = format!(
+            "{name} {} {:?} {env_layout:?} {env_convention:?} {env_sanitize} {env_repair}",
+            self.env_rotate, self.env_proxy
+        );
+        (text, files)
+    }
+
     /// `environment`, turned and in its room as asked.
     pub fn turned(&self, environment: Environment) -> Environment {
         let proxy = self.env_proxy.or(environment.proxy().copied());
         environment.rotated_deg(self.env_rotate).with_proxy(proxy)
     }
+}
+
+/// The files that a panorama may be read from: the file, those of the folder, or those of the pattern `{face}`; by their names.
+fn files_of(text: &str) -> Vec<PathBuf> {
+    let path = Path::new(text);
+    let (folder, start, end) = match text.split_once("{face}") {
+        // The place of a face's name is in the file's name.
+        Some(_) => {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let (start, end) = name.split_once("{face}").unwrap_or_default();
+            let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+            (folder, start.to_owned(), end.to_owned())
+        }
+        None if path.is_dir() => (path.to_owned(), String::new(), String::new()),
+        None => return vec![path.to_owned()],
+    };
+    let here = folder.as_os_str().is_empty();
+    let entries = std::fs::read_dir(if here { Path::new(".") } else { &folder });
+    let mut files: Vec<PathBuf> = entries
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| entry.ok())
+        .filter(|entry| {
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            name.starts_with(&start) && name.ends_with(&end) && entry.path().is_file()
+        })
+        .map(|entry| folder.join(entry.file_name()))
+        .collect();
+    files.sort();
+    files
 }
 
 fn proxy(text: &str) -> Result<Proxy, String> {

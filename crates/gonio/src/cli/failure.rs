@@ -259,11 +259,22 @@ impl From<ImageError> for Failure {
 
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
-        let help = match error {
-            RenderError::Limit { .. } => "choose a smaller --size",
-            _ => "--help explains each option",
-        };
-        Self::usage(chain(&error)).with_help(help)
+        let message = chain(&error);
+        match error {
+            RenderError::Image(e) => e.into(),
+            RenderError::Io {
+                path,
+                action,
+                source,
+            } => Self::io(&path.display().to_string(), action, &source),
+            RenderError::Part { .. } => {
+                Self::input(message).with_help("render this part again, or name the right file")
+            }
+            RenderError::Merge { .. } => Self::input(message)
+                .with_help("'gonio info FILE' tells which samples of what a part has"),
+            RenderError::Limit { .. } => Self::usage(message).with_help("choose a smaller --size"),
+            _ => Self::usage(message).with_help("--help explains each option"),
+        }
     }
 }
 

@@ -10,7 +10,10 @@ mod documents;
 mod env;
 mod environment;
 mod failure;
+mod farm;
+mod info;
 mod measure;
+mod merge;
 mod parse;
 mod presets;
 mod progress;
@@ -47,6 +50,13 @@ struct Arguments {
 enum Command {
     /// Render a scene, or the embedded preview
     Render(Box<render::Arguments>),
+    /// Put the parts of a picture together
+    Merge(merge::Arguments),
+    /// Write a rendering in parts as a job for a farm, a cluster or a cloud
+    #[command(subcommand)]
+    Farm(farm::Command),
+    /// How a picture or a part of one came to be
+    Info(info::Arguments),
     /// List, show, evaluate and check reflection functions
     #[command(subcommand)]
     Brdf(brdf::Command),
@@ -80,6 +90,9 @@ pub fn main() -> ExitCode {
 fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Render(arguments) => render::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
+        Command::Farm(command) => farm::run(&command),
+        Command::Info(arguments) => info::run(&arguments),
         Command::Brdf(command) => brdf::run(command),
         Command::Env(command) => env::run(command),
         Command::Measure(command) => measure::run(command),

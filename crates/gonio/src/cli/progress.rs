@@ -1,26 +1,45 @@
-//! The progress bar of a rendering, and the wish of the user to stop it.
+//! How far a rendering is, for people and for programs, and the wish of the user to stop it.
 
 use gonio_render::{Progress, Target};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::sync::OnceLock;
+use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
 
-/// A bar on standard error, when that is a terminal.
-pub(crate) struct Bar {
+/// How progress is told.
+#[derive(Debug, Clone, Copy, PartialEq, clap::ValueEnum)]
+pub(crate) enum ProgressKind {
+    /// A bar on standard error, when that is a terminal.
+    Tty,
+    /// A JSON object a line, on standard error.
+    Json,
+    /// `openjd_progress: PERCENT` and `openjd_status: TEXT`, on standard output.
+    Openjd,
+}
+
+/// Tells how far a rendering is.
+pub(crate) struct Telling {
+    kind: ProgressKind,
     bar: ProgressBar,
     target: Target,
+    /// When a line was written last, and whether what came after it is still untold.
+    last: Option<Instant>,
+    untold: Option<Progress>,
 }
 
 /// The bar's resolution: it moves by the fraction of the nearest target.
 const STEPS: u64 = 1000;
+/// Lines are not written more often.
+const LEAST_PAUSE: Duration = Duration::from_secs(1);
 
-impl Bar {
-    /// A bar for a rendering that ends at `target`; hidden if `quiet`.
-    pub fn new(target: Target, quiet: bool) -> Self {
+impl Telling {
+    /// For a rendering that ends at `target`; no bar if `quiet`.
+    pub fn new(kind: ProgressKind, target: Target, quiet: bool) -> Self {
+        let hidden = quiet || kind != ProgressKind::Tty;
         let bar = ProgressBar::with_draw_target(
             Some(STEPS),
-            if quiet {
+            if hidden {
                 ProgressDrawTarget::hidden()
             } else {
                 ProgressDrawTarget::stderr()
@@ -30,30 +49,57 @@ impl Bar {
             bar.set_style(style.progress_chars("━━─"));
         }
         on_stop_request(&bar);
-        Self { bar, target }
+        Self {
+            kind,
+            bar,
+            target,
+            last: None,
+            untold: None,
+        }
     }
 
     /// Shows how far the rendering is.
-    pub fn update(&self, progress: &Progress) {
-        let fraction = self.fraction(progress).clamp(0.0, 1.0);
-        let seconds = progress.elapsed.as_secs_f64();
-        self.bar.set_message(format!(
-            "{} spp · {} rays/s · noise {} · {} left",
-            progress.samples,
-            quantity(progress.rays.total() as f64 / seconds.max(1e-9)),
-            percent(progress.noise),
-            clock(Duration::from_secs_f64(
-                (seconds * (1.0 - fraction) / fraction.max(1e-3))
-                    .ceil()
-                    .min(359_999.0)
-            )),
-        ));
-        self.bar.set_position((fraction * STEPS as f64) as u64);
+    pub fn update(&mut self, progress: &Progress) {
+        if self.kind == ProgressKind::Tty {
+            let fraction = self.fraction(progress);
+            let seconds = progress.elapsed.as_secs_f64();
+            self.bar.set_message(format!(
+                "{} spp · {} rays/s · noise {} · {} left",
+                progress.samples,
+                quantity(progress.rays.total() as f64 / seconds.max(1e-9)),
+                percent(progress.noise),
+                clock(left(progress, fraction)),
+            ));
+            self.bar.set_position((fraction * STEPS as f64) as u64);
+            return;
+        }
+        if self.last.is_some_and(|t| t.elapsed() < LEAST_PAUSE) {
+            self.untold = Some(*progress);
+            return;
+        }
+        self.say(progress);
     }
 
-    /// Takes the bar away.
-    pub fn finish(&self) {
+    /// Takes the bar away, or says the last line.
+    pub fn finish(&mut self) {
+        if let Some(progress) = self.untold {
+            self.say(&progress);
+        }
         self.bar.finish_and_clear();
+    }
+
+    /// Writes a line. Nobody may be listening: that is no reason to fail.
+    fn say(&mut self, progress: &Progress) {
+        (self.last, self.untold) = (Some(Instant::now()), None);
+        let fraction = self.fraction(progress);
+        let _ = match self.kind {
+            ProgressKind::Tty => Ok(()),
+            ProgressKind::Json => writeln!(std::io::stderr(), "{}", json(progress, fraction)),
+            ProgressKind::Openjd => {
+                let mut out = std::io::stdout().lock();
+                write!(out, "{}", openjd(progress, fraction)).and_then(|()| out.flush())
+            }
+        };
     }
 
     /// How near the nearest target is, 0 to 1. The noise of a pixel falls with the root of its samples.
@@ -67,8 +113,37 @@ impl Bar {
             .target
             .noise
             .map_or(0.0, |n| (n / progress.noise).powi(2));
-        by_samples.max(by_time).max(by_noise)
+        by_samples.max(by_time).max(by_noise).clamp(0.0, 1.0)
     }
+}
+
+/// The time that is left, at the pace so far.
+fn left(progress: &Progress, fraction: f64) -> Duration {
+    let seconds = progress.elapsed.as_secs_f64() * (1.0 - fraction) / fraction.max(1e-3);
+    Duration::from_secs_f64(seconds.ceil().min(359_999.0))
+}
+
+fn json(progress: &Progress, fraction: f64) -> serde_json::Value {
+    serde_json::json!({
+        "event": "progress",
+        "samples": progress.samples,
+        "of": progress.of,
+        "fraction": fraction,
+        "noise": Some(progress.noise).filter(|n| n.is_finite()),
+        "rays": progress.rays.total(),
+        "seconds": progress.elapsed.as_secs_f64(),
+        "seconds_left": left(progress, fraction).as_secs(),
+    })
+}
+
+fn openjd(progress: &Progress, fraction: f64) -> String {
+    format!(
+        "openjd_progress: {:.1}\nopenjd_status: {} samples per pixel, noise {}, {} left\n",
+        100.0 * fraction,
+        progress.samples,
+        percent(progress.noise),
+        clock(left(progress, fraction))
+    )
 }
 
 /// `12.3 M`, `4.56 k`: three digits and a prefix.
@@ -109,31 +184,68 @@ pub(crate) fn clock(time: Duration) -> String {
 
 static STOP: AtomicBool = AtomicBool::new(false);
 static LISTENING: OnceLock<()> = OnceLock::new();
+static BAR: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// Whether the user has asked to stop (Ctrl-C, or a termination signal) since the first bar was made.
+/// Whether the user has asked to stop (Ctrl-C, or a termination signal).
 pub(crate) fn stop_requested() -> bool {
     STOP.load(Ordering::Relaxed)
 }
 
-/// Begins to listen for the wish to stop. The first one is answered above `bar`; a second one ends the process at once.
-pub(crate) fn on_stop_request(bar: &ProgressBar) {
+/// Begins to listen for the wish to stop. To wish it again is harmless: job queues do.
+pub(crate) fn listen() {
     LISTENING.get_or_init(|| {
-        let bar = bar.clone();
         // Without a handler the signal ends the process at once, which is the platform's default.
-        let _ = ctrlc::set_handler(move || {
+        let _ = ctrlc::set_handler(|| {
             if STOP.swap(true, Ordering::Relaxed) {
-                std::process::exit(4);
+                return;
             }
-            bar.println(
-                "note: stopping after this pass; a second Ctrl-C stops at once, without pictures",
-            );
+            if let Some(bar) = &*BAR.lock().unwrap_or_else(PoisonError::into_inner) {
+                bar.println("note: stopping in good order, at the end of this pass");
+            }
         });
     });
+}
+
+/// Listens, and answers the wish above `bar`.
+pub(crate) fn on_stop_request(bar: &ProgressBar) {
+    *BAR.lock().unwrap_or_else(PoisonError::into_inner) = Some(bar.clone());
+    listen();
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_for_programs() {
+        let progress = Progress {
+            samples: 16,
+            of: 64,
+            rays: gonio_render::RayCounts {
+                nearest: 700,
+                shadow: 300,
+            },
+            elapsed: Duration::from_secs(10),
+            noise: f64::INFINITY,
+        };
+        let line = json(&progress, 0.25);
+        assert_eq!(
+            (&line["event"], &line["of"]),
+            (&"progress".into(), &64.into())
+        );
+        assert_eq!(
+            (&line["noise"], &line["rays"]),
+            (&serde_json::Value::Null, &1000.into())
+        );
+        assert_eq!(
+            (&line["seconds_left"], &line["fraction"]),
+            (&30.into(), &0.25.into())
+        );
+        assert_eq!(
+            openjd(&progress, 0.25),
+            "openjd_progress: 25.0\nopenjd_status: 16 samples per pixel, noise –, 0:30 left\n"
+        );
+    }
 
     #[test]
     fn figures_are_readable() {

@@ -1,24 +1,37 @@
 //! `gonio render`.
 
+mod checkpoint;
+pub(super) mod product;
+mod range;
+mod scene;
+
+pub(super) use scene::load_scene;
+
 use super::destination;
 use super::environment::EnvironmentArguments;
 use super::failure::Failure;
 use super::parse;
-use super::progress::{self, Bar};
+use super::progress::{self, ProgressKind, Telling};
 use super::summary::Summary;
 use super::terminal::{note, print, print_json, warn};
-use crate::preview;
-use gonio_brdf::ModelSpec;
+use checkpoint::{Checkpoint, CheckpointArguments};
 use gonio_env::Candidates;
-use gonio_image::tonemap::ToneMap;
 use gonio_radiometry::sequence::SamplerKind;
 use gonio_render::integrator::{Direct, EnvironmentSampling, Path as PathTracer};
-use gonio_render::{Film, Integrator, PixelFilter, Progress, RenderOptions, Stop, Target};
-use gonio_scene::{Camera, LoadOptions, Scene, SceneError};
-use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use gonio_render::part::Label;
+use gonio_render::{
+    Exposure, Identity, Integrator, PixelFilter, Rejected, RenderOptions, Stop, Target,
+};
+use gonio_scene::{Camera, Scene};
+use product::{PictureArguments, is_part, write_all};
+use range::Chosen;
+use scene::Loaded;
+use std::ops::{ControlFlow, Range};
+use std::path::PathBuf;
 use std::time::Duration;
 
+/// Samples per pixel when nothing is said.
+const DEFAULT_SAMPLES: u32 = 64;
 /// Samples per pixel when time or noise is what ends the rendering.
 const NO_LIMIT: u32 = 1 << 20;
 
@@ -38,7 +51,9 @@ const NO_LIMIT: u32 = 1 << 20;
     [[shape]]\n  \
     kind = \"sphere\"\n  \
     material = \"gold\"\n\n\
-    Ctrl-C ends the rendering after the pass, writes the pictures, and exits with 4.")]
+    gonio render room.toml --spp 4096 --checkpoint room.checkpoint --resume\n  \
+    gonio render room.toml --spp 4096 --part 0/8 -o part0.gonio\n\n\
+    Ctrl-C ends the rendering after the pass, writes the pictures and the checkpoint, and exits with 4.")]
 pub(super) struct Arguments {
     /// A scene: .toml, .gltf, .glb, .obj or .ply; without one, the embedded preview
     scene: Option<PathBuf>,
@@ -48,7 +63,7 @@ pub(super) struct Arguments {
     /// Print the summary as JSON
     #[arg(long)]
     json: bool,
-    /// Where to write: .exr (radiance and layers), .hdr or .png; may be repeated [default: gonio.png and gonio.exr]
+    /// Where to write: .exr (radiance and layers), .hdr, .png, or .gonio (a part for 'gonio merge'); {part} stands for the K of --part; may be repeated [default: gonio.png and gonio.exr, or samples-FIRST-END.gonio for a part]
     #[arg(short, long = "output", value_name = "FILE", help_heading = "Picture")]
     output: Vec<PathBuf>,
     /// Size in pixels [default: the scene's, or 960x540]
@@ -57,12 +72,8 @@ pub(super) struct Arguments {
     /// The camera, by name or by number from 0
     #[arg(long, value_name = "CAMERA", help_heading = "Picture")]
     camera: Option<String>,
-    /// Exposure of PNG files, in stops
-    #[arg(long, value_name = "EV", default_value = "0", value_parser = parse::finite, allow_hyphen_values = true, help_heading = "Picture")]
-    exposure: f32,
-    /// Tone map of PNG files
-    #[arg(long, value_name = "NAME", default_value = "pbr-neutral", value_parser = parse::tone_map(), help_heading = "Picture")]
-    tonemap: ToneMap,
+    #[command(flatten, next_help_heading = "Picture")]
+    picture: PictureArguments,
     /// Samples per pixel [default: 64, or as many as --time or --noise take]
     #[arg(long, value_name = "N", value_parser = parse::whole(1, u32::MAX), allow_hyphen_values = true, help_heading = "How long: ends at the first of these")]
     spp: Option<u32>,
@@ -72,6 +83,20 @@ pub(super) struct Arguments {
     /// Stop when 95 % of the pixels have a relative error below this: 2%
     #[arg(long, value_name = "ERROR", value_parser = parse::fraction, allow_hyphen_values = true, help_heading = "How long: ends at the first of these")]
     noise: Option<f64>,
+    /// Take these samples alone, counted from 0, END not among them: a part of the picture, see 'gonio merge'
+    #[arg(long, value_name = "FIRST:END", value_parser = range::samples, conflicts_with_all = ["part", "time", "noise"], help_heading = "Parts and interruptions")]
+    samples: Option<Range<u32>>,
+    /// Take part K of N of the samples of --spp, counted from 0; auto/N takes K from the job system: SLURM_ARRAY_TASK_ID, PBS_ARRAY_INDEX, HQ_TASK_ID or JOB_COMPLETION_INDEX
+    #[arg(long, value_name = "K/N", value_parser = range::part, allow_hyphen_values = true, conflicts_with_all = ["time", "noise"], help_heading = "Parts and interruptions")]
+    part: Option<range::Part>,
+    #[command(flatten, next_help_heading = "Parts and interruptions")]
+    checkpoint: CheckpointArguments,
+    /// How progress is told: a bar (tty), lines of JSON on standard error (json), or lines for Open Job Description on standard output (openjd)
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = ProgressKind::Tty, help_heading = "Parts and interruptions")]
+    progress: ProgressKind,
+    /// Exit with 1 if a sample was negative or not finite
+    #[arg(long)]
+    strict: bool,
     /// Replace materials: [MATERIAL=]MODEL:key=value,…; without MATERIAL, all of them (in the preview, the object's)
     #[arg(long, value_name = "SPEC", help_heading = "Scene")]
     material: Vec<String>,
@@ -125,24 +150,53 @@ enum SamplerName {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let outputs = outputs(arguments)?;
-    let (scene, notes) = scene(arguments)?;
+    progress::listen();
+    let chosen = range::of(arguments, |name| std::env::var(name).ok())?;
+    let outputs = outputs(arguments, &chosen)?;
+    let range = chosen.samples.clone();
+    let Loaded {
+        scene,
+        notes,
+        hash,
+        name,
+    } = scene::load(arguments)?;
     let camera = camera(arguments, &scene);
-    let options = options(arguments, &scene);
+    let options = options(arguments, &scene, &range);
+    let label = Label {
+        identity: Identity::new(&hash, &camera, &options),
+        scene: name,
+        of: chosen.of,
+    };
     scene.warnings.iter().for_each(|text| warn(text));
     if !arguments.quiet {
         notes.iter().for_each(|text| note(text));
     }
-    let bar = Bar::new(options.target, arguments.quiet);
-    let mut last = None;
+    if outputs.iter().all(|path| is_part(path)) && all_are_there(&outputs, &label, &range) {
+        return say_that_all_are_there(arguments, &outputs, &range);
+    }
+    let path = arguments.checkpoint.checkpoint.as_ref();
+    let mut checkpoint =
+        path.map(|p| Checkpoint::new(chosen.name(p), &arguments.checkpoint, &label));
+    let earlier = match &checkpoint {
+        Some(checkpoint) => checkpoint.resume(&range)?,
+        None => None,
+    };
+    let mut exposure = match earlier {
+        Some(exposure) => exposure,
+        None => Exposure::new(options.width, options.height, range.start)?,
+    };
+    let mut telling = Telling::new(arguments.progress, options.target, arguments.quiet);
     let mut work = || {
-        gonio_render::render(
+        gonio_render::expose(
             &scene,
             &camera,
             &options,
-            |progress: &Progress, _: &Film| {
-                bar.update(progress);
-                last = Some(*progress);
+            &mut exposure,
+            |progress, exposure| {
+                telling.update(progress);
+                if let Some(checkpoint) = &mut checkpoint {
+                    checkpoint.keep(exposure);
+                }
                 if progress::stop_requested() {
                     ControlFlow::Break(())
                 } else {
@@ -151,7 +205,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             },
         )
     };
-    let rendered = match arguments.threads {
+    let stop = match arguments.threads {
         None => work(),
         Some(threads) => rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -162,24 +216,34 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             })?
             .install(work),
     };
-    bar.finish();
-    let (film, stop) = rendered?;
-    let progress = last.ok_or_else(|| Failure::usage("nothing was rendered"))?;
-    // One that can't be written is no reason to lose the others.
-    let (written, failures): (Vec<_>, Vec<_>) = outputs
-        .iter()
-        .map(|path| write(arguments, &options, &film, path).map(|()| path))
-        .partition(Result::is_ok);
+    telling.finish();
+    let stop = stop?;
+    // A part is whole or not there.
+    let complete = stop != Stop::Interrupted;
+    let wanted = outputs.iter().filter(|path| complete || !is_part(path));
+    let (written, mut failure) = write_all(wanted, &label, &exposure, &arguments.picture);
+    if let Some(checkpoint) = &checkpoint {
+        // A part that is written has all that its checkpoint had.
+        let in_a_part = written.iter().any(|path| is_part(path));
+        let kept = match in_a_part {
+            true => checkpoint.remove(),
+            false => checkpoint.write(&exposure),
+        };
+        failure = failure.or(kept.err());
+    }
+    let film = &exposure.film;
     let summary = Summary {
-        outputs: written.into_iter().flatten().collect(),
+        outputs: written,
         width: options.width,
         height: options.height,
-        samples_per_pixel: progress.samples,
-        seconds: progress.elapsed.as_secs_f64(),
-        rays: progress.rays.total(),
-        noise: Some(progress.noise).filter(|n| n.is_finite()),
+        samples_per_pixel: film.samples_per_pixel(),
+        samples: [exposure.samples.start, exposure.samples.end],
+        seconds: exposure.elapsed.as_secs_f64(),
+        rays: exposure.rays.total(),
+        noise: Some(film.noise()).filter(|n| n.is_finite()),
         stopped_by: stop,
         seed: options.seed,
+        scene_hash: &hash,
         rejected_samples: film.rejected(),
         warnings: &scene.warnings,
         notes: &notes,
@@ -192,95 +256,134 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else if !arguments.quiet {
         print(&summary.in_words())?;
     }
-    if let Some(failure) = failures.into_iter().find_map(Result::err) {
+    if let Some(failure) = failure {
         return Err(failure);
     }
-    if stop == Stop::Interrupted {
-        return Err(Failure::interrupted(format!(
-            "interrupted after {} samples per pixel; the pictures are written",
-            progress.samples
-        ))
-        .with_help(format!(
-            "the same command with --spp {} gives the same pictures",
-            progress.samples
-        )));
+    if !complete {
+        return Err(interrupted(&exposure, checkpoint.as_ref()));
     }
-    Ok(())
+    strict(arguments.strict, film.rejected())
 }
 
-/// The output files, known to be writable in kind and place before any time is spent.
-fn outputs(arguments: &Arguments) -> Result<Vec<PathBuf>, Failure> {
-    let paths = match arguments.output.is_empty() {
-        true => vec!["gonio.png".into(), "gonio.exr".into()],
-        false => arguments.output.clone(),
-    };
-    for path in &paths {
-        destination::check(path)?;
+impl Arguments {
+    /// Fails if there is an option among them that a rendering in parts has of its own, or none of the samples for a part.
+    pub(super) fn check_for_parts(&self, parts: u32) -> Result<(), Failure> {
+        let given = [
+            ("--output", !self.output.is_empty()),
+            ("--samples", self.samples.is_some()),
+            ("--part", self.part.is_some()),
+            ("--checkpoint", self.checkpoint.checkpoint.is_some()),
+            ("--time", self.time.is_some()),
+            ("--noise", self.noise.is_some()),
+            ("--threads", self.threads.is_some()),
+        ];
+        if let Some((name, _)) = given.iter().find(|(_, given)| *given) {
+            return Err(
+                Failure::usage(format!("{name} is not for a rendering in parts")).with_help(
+                    "how many samples there are is --spp; the rest follows from --parts and --cpus",
+                ),
+            );
+        }
+        let samples = self.spp.unwrap_or(DEFAULT_SAMPLES);
+        if samples < parts {
+            return Err(Failure::usage(format!(
+                "{parts} parts of {samples} samples per pixel: some would have none"
+            ))
+            .with_help("more samples: -- --spp N"));
+        }
+        Ok(())
     }
-    Ok(paths)
 }
 
-/// The scene as the arguments ask for it, and what was chosen where they and the file are silent.
-fn scene(arguments: &Arguments) -> Result<(Scene, Vec<String>), Failure> {
-    let mut notes = Vec::new();
-    let load = LoadOptions {
-        camera: arguments.camera.clone(),
-        ..arguments.environment.for_scene()
-    };
-    let mut scene = match &arguments.scene {
-        Some(path) => load_scene(path, &load)?,
-        None => preview::load(load)?,
-    };
-    for text in &arguments.material {
-        replace_material(&mut scene, text, arguments.scene.is_none())
-            .map_err(|failure| failure.about(&format!("--material '{text}'")))?;
+/// Fails if samples were kept out of a picture that must have all.
+pub(super) fn strict(wanted: bool, rejected: &Rejected) -> Result<(), Failure> {
+    match rejected.count {
+        0 => Ok(()),
+        _ if !wanted => Ok(()),
+        1 => Err("one sample was negative or not finite".to_owned()),
+        n => Err(format!("{n} samples were negative or not finite")),
     }
-    arguments.environment.apply(&mut scene)?;
-    if scene.lights.iter().next().is_none() {
-        let panorama = preview::panorama()?;
-        scene.set_environment(Some(arguments.environment.turned(panorama)));
-        notes.push(
-            "the scene has no light: the built-in panorama lights it; --env chooses another".into(),
-        );
-    }
-    if scene.cameras.is_empty() {
-        notes.push("the scene has no camera: it is seen from where all of it is in view".into());
-    }
-    Ok((scene, notes))
-}
-
-/// Reads a scene; one without content is named by its file.
-pub(super) fn load_scene(path: &Path, options: &LoadOptions) -> Result<Scene, Failure> {
-    Scene::load(path, options).map_err(|e| match e {
-        SceneError::Empty { .. } => Failure::from(e).about(&path.display().to_string()),
-        other => other.into(),
+    .map_err(|text| {
+        Failure::verification(text).with_help(
+            "--strict asks for none; 'gonio brdf check' finds what is wrong with a function",
+        )
     })
 }
 
-/// Follows one `--material`.
-fn replace_material(scene: &mut Scene, text: &str, preview: bool) -> Result<(), Failure> {
-    // Names of materials may hold any character, so the scene's own come first.
-    let known = scene
-        .material_names()
-        .into_iter()
-        .filter(|name| {
-            text.strip_prefix(name)
-                .is_some_and(|rest| rest.starts_with('='))
-        })
-        .max_by_key(|name| name.len())
-        .map(str::len);
-    let end = known.or_else(|| {
-        text.find(['=', ':', '('])
-            .filter(|i| text[*i..].starts_with('='))
+fn all_are_there(outputs: &[PathBuf], label: &Label, range: &Range<u32>) -> bool {
+    outputs.iter().all(|path| {
+        let there = checkpoint::is_there(path, label, range);
+        if let Err(Some(why)) = &there {
+            note(why);
+        }
+        there.is_ok()
+    })
+}
+
+fn say_that_all_are_there(
+    arguments: &Arguments,
+    outputs: &[PathBuf],
+    range: &Range<u32>,
+) -> Result<(), Failure> {
+    if arguments.json {
+        return print_json(&serde_json::json!({
+            "outputs": outputs,
+            "samples": [range.start, range.end],
+            "already_there": true,
+        }));
+    }
+    if arguments.quiet {
+        return Ok(());
+    }
+    let lines = outputs.iter().map(|path| {
+        let path = path.display();
+        format!(
+            "{path} has the samples {}:{} of this picture already\n",
+            range.start, range.end
+        )
     });
-    let (target, spec) = match end {
-        Some(end) => (&text[..end], &text[end + 1..]),
-        None if preview => (preview::OBJECT, text),
-        None => ("*", text),
+    print(&lines.collect::<String>())
+}
+
+/// The failure that says how to go on.
+fn interrupted(exposure: &Exposure, checkpoint: Option<&Checkpoint>) -> Failure {
+    let Range { start, end } = exposure.samples;
+    let taken = end - start;
+    match checkpoint {
+        Some(checkpoint) => {
+            let path = checkpoint.path().display();
+            Failure::interrupted(format!(
+                "interrupted after {taken} samples per pixel; {path} holds them"
+            ))
+            .with_help("the same command with --resume goes on from there")
+        }
+        None => Failure::interrupted(format!(
+            "interrupted after {taken} samples per pixel; the pictures are written, parts are not"
+        ))
+        .with_help(match start {
+            0 => format!("the same command with --spp {end} gives the same pictures; --checkpoint lets one go on"),
+            _ => "with --checkpoint FILE a rendering can go on".into(),
+        }),
+    }
+}
+
+/// The output files, known to be writable in kind and place before any time is spent.
+fn outputs(arguments: &Arguments, chosen: &Chosen) -> Result<Vec<PathBuf>, Failure> {
+    let Range { start, end } = chosen.samples;
+    let paths = match arguments.output.is_empty() {
+        false => arguments.output.iter().map(|p| chosen.name(p)).collect(),
+        true if arguments.samples.is_some() || arguments.part.is_some() => {
+            vec![format!("samples-{start}-{end}.gonio").into()]
+        }
+        true => vec!["gonio.png".into(), "gonio.exr".into()],
     };
-    let spec = ModelSpec::parse(spec)?;
-    scene.replace_material(target, &spec)?;
-    Ok(())
+    for path in &paths {
+        destination::check_product(path)?;
+    }
+    if let Some(path) = &arguments.checkpoint.checkpoint {
+        destination::writable(&chosen.name(path))?;
+    }
+    Ok(paths)
 }
 
 fn camera(arguments: &Arguments, scene: &Scene) -> Camera {
@@ -292,16 +395,13 @@ fn size(arguments: &Arguments, scene: &Scene) -> [u32; 2] {
     arguments.size.or(scene.film_size).unwrap_or([960, 540])
 }
 
-fn options(arguments: &Arguments, scene: &Scene) -> RenderOptions {
-    let open_ended = arguments.time.is_some() || arguments.noise.is_some();
+fn options(arguments: &Arguments, scene: &Scene, range: &Range<u32>) -> RenderOptions {
     let [width, height] = size(arguments, scene);
     RenderOptions {
         width,
         height,
         target: Target {
-            samples: arguments
-                .spp
-                .unwrap_or(if open_ended { NO_LIMIT } else { 64 }),
+            samples: range.end,
             time: arguments.time,
             noise: arguments.noise,
         },
@@ -334,47 +434,4 @@ fn environment_sampling(arguments: &Arguments) -> EnvironmentSampling {
             reflection: arguments.env_candidates,
         }),
     }
-}
-
-fn write(
-    arguments: &Arguments,
-    options: &RenderOptions,
-    film: &Film,
-    path: &Path,
-) -> Result<(), Failure> {
-    match destination::extension(path).as_str() {
-        "exr" => film
-            .layers(metadata(arguments, options, film))
-            .write_exr(path)?,
-        "png" => {
-            film.image()
-                .write_png(path, arguments.tonemap, arguments.exposure)?;
-        }
-        _ => film.image().write(path)?,
-    }
-    Ok(())
-}
-
-/// How the image came to be, as text attributes of the file.
-fn metadata(arguments: &Arguments, options: &RenderOptions, film: &Film) -> Vec<(String, String)> {
-    let scene = match &arguments.scene {
-        Some(path) => path.display().to_string(),
-        None => "preview".into(),
-    };
-    [
-        ("generator", format!("gonio {}", env!("CARGO_PKG_VERSION"))),
-        ("gonio.scene", scene),
-        ("gonio.integrator", options.integrator.name().into()),
-        (
-            "gonio.samplesPerPixel",
-            film.samples_per_pixel().to_string(),
-        ),
-        ("gonio.seed", options.seed.to_string()),
-        ("gonio.filter", options.filter.name().into()),
-        ("gonio.unit", "W m^-2 sr^-1 in linear Rec.709 RGB".into()),
-        ("gonio.clamping", "none".into()),
-        ("gonio.rejectedSamples", film.rejected().count.to_string()),
-    ]
-    .map(|(key, value)| (key.to_owned(), value))
-    .into()
 }

@@ -1,7 +1,7 @@
 //! What a rendering did, for people and for programs.
 
 use super::progress::{percent, quantity};
-use gonio_render::{Rejected, Stop};
+use gonio_render::{Rejected, RejectedSample, Stop};
 use gonio_scene::Scene;
 use std::path::PathBuf;
 
@@ -12,12 +12,16 @@ pub(super) struct Summary<'a> {
     pub width: u32,
     pub height: u32,
     pub samples_per_pixel: u32,
+    /// The index of the first sample and that after the last.
+    pub samples: [u32; 2],
+    /// Of all runs that contributed.
     pub seconds: f64,
     pub rays: u64,
     /// None before there are samples enough for an estimate.
     pub noise: Option<f64>,
     pub stopped_by: Stop,
     pub seed: u64,
+    pub scene_hash: &'a str,
     pub rejected_samples: &'a Rejected,
     pub warnings: &'a [String],
     pub notes: &'a [String],
@@ -60,4 +64,16 @@ impl Summary<'_> {
         }
         text
     }
+}
+
+/// The place of a rejected sample, where the scene is not at hand.
+pub(super) fn rejected_in_words(first: &RejectedSample) -> String {
+    let [x, y] = first.pixel;
+    let material = first
+        .material
+        .map_or("no surface".into(), |m| format!("material {m}"));
+    format!(
+        "pixel {x}, {y}, sample {}, {material}, radiance {:?}",
+        first.sample, first.radiance
+    )
 }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 /// Before the command listens, a signal ends it at once. Linux tells which signals a process handles; elsewhere a while has
 /// to be enough.
-fn wait_until_it_listens(process: u32) {
+pub fn wait_until_it_listens(process: u32) {
     if !cfg!(target_os = "linux") {
         std::thread::sleep(Duration::from_secs(5));
         return;

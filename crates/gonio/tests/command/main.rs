@@ -4,10 +4,12 @@
 
 mod arguments;
 mod brdf;
+mod checkpoint;
 mod ci;
 mod convert;
 mod damaged;
 mod diff;
+mod divide;
 mod environment;
 mod exec;
 mod export;

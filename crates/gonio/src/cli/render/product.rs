@@ -1,0 +1,108 @@
+//! What a rendering leaves: pictures with how they came to be, and parts.
+
+use crate::cli::destination;
+use crate::cli::failure::Failure;
+use crate::cli::parse;
+use crate::cli::summary::rejected_in_words;
+use gonio_image::tonemap::ToneMap;
+use gonio_render::part::{self, Exposure, Label};
+use std::path::{Path, PathBuf};
+
+/// How pictures are written.
+#[derive(clap::Args)]
+pub(in crate::cli) struct PictureArguments {
+    /// Exposure of PNG files, in stops
+    #[arg(long, value_name = "EV", default_value = "0", value_parser = parse::finite, allow_hyphen_values = true)]
+    pub exposure: f32,
+    /// Tone map of PNG files
+    #[arg(long, value_name = "NAME", default_value = "pbr-neutral", value_parser = parse::tone_map())]
+    pub tonemap: ToneMap,
+    /// Write the time spent into EXR files: two pictures of the same samples are then no longer the same file
+    #[arg(long)]
+    pub write_time: bool,
+}
+
+/// The extension of a part.
+pub(in crate::cli) fn is_part(path: &Path) -> bool {
+    destination::extension(path) == "gonio"
+}
+
+/// Writes each file. One that can't be written is no reason to lose the others; the first failure is given beside those that are written.
+pub(in crate::cli) fn write_all<'a>(
+    paths: impl IntoIterator<Item = &'a PathBuf>,
+    label: &Label,
+    exposure: &Exposure,
+    how: &PictureArguments,
+) -> (Vec<&'a PathBuf>, Option<Failure>) {
+    let mut written = Vec::new();
+    let mut failure = None;
+    for path in paths {
+        match write(path, label, exposure, how) {
+            Ok(()) => written.push(path),
+            Err(e) => failure = failure.or(Some(e)),
+        }
+    }
+    (written, failure)
+}
+
+fn write(
+    path: &Path,
+    label: &Label,
+    exposure: &Exposure,
+    how: &PictureArguments,
+) -> Result<(), Failure> {
+    let film = &exposure.film;
+    match destination::extension(path).as_str() {
+        "gonio" => part::write(path, label, exposure)?,
+        "exr" => film
+            .layers(metadata(label, exposure, how.write_time))
+            .write_exr(path)?,
+        "png" => film.image().write_png(path, how.tonemap, how.exposure)?,
+        _ => film.image().write(path)?,
+    }
+    Ok(())
+}
+
+/// How the picture came to be, as text attributes of the file: functions of its samples alone, so that the same samples make the same file,
+/// but for the time if that is asked for.
+fn metadata(label: &Label, exposure: &Exposure, with_time: bool) -> Vec<(String, String)> {
+    let film = &exposure.film;
+    let identity = |name: &str| label.identity.get(name).unwrap_or_default().to_owned();
+    let mut all = vec![
+        ("generator", identity("version")),
+        ("gonio.scene", label.scene.clone()),
+        ("gonio.sceneHash", identity("scene")),
+        ("gonio.camera", identity("camera")),
+        ("gonio.integrator", identity("integrator")),
+        ("gonio.sampler", identity("sampler")),
+        ("gonio.filter", identity("filter")),
+        ("gonio.seed", identity("seed")),
+        (
+            "gonio.samplesPerPixel",
+            film.samples_per_pixel().to_string(),
+        ),
+        (
+            "gonio.samples",
+            format!("{}:{}", exposure.samples.start, exposure.samples.end),
+        ),
+        ("gonio.unit", "W m^-2 sr^-1".into()),
+        (
+            "gonio.colourSpace",
+            "linear, Rec.709 primaries, D65 white".into(),
+        ),
+        ("gonio.clamping", "none".into()),
+        ("gonio.rejectedSamples", film.rejected().count.to_string()),
+    ];
+    if let Some(first) = &film.rejected().first {
+        all.push(("gonio.firstRejectedSample", rejected_in_words(first)));
+    }
+    if with_time {
+        all.push((
+            "gonio.seconds",
+            format!("{:.3}", exposure.elapsed.as_secs_f64()),
+        ));
+    }
+    all.into_iter()
+        .map(|(key, value)| (key.to_owned(), value))
+        .collect()
+}
