@@ -1,6 +1,7 @@
 //! `gonio render`.
 
 mod checkpoint;
+mod live;
 pub(super) mod product;
 mod range;
 mod scene;
@@ -23,6 +24,7 @@ use gonio_render::{
     Exposure, Identity, Integrator, PixelFilter, Rejected, RenderOptions, Stop, Target,
 };
 use gonio_scene::{Camera, Scene};
+use live::{Live, LiveArguments};
 use product::{PictureArguments, is_part, write_all};
 use range::Chosen;
 use scene::Loaded;
@@ -74,6 +76,8 @@ pub(super) struct Arguments {
     camera: Option<String>,
     #[command(flatten, next_help_heading = "Picture")]
     picture: PictureArguments,
+    #[command(flatten, next_help_heading = "Picture")]
+    live: LiveArguments,
     /// Samples per pixel [default: 64, or as many as --time or --noise take]
     #[arg(long, value_name = "N", value_parser = parse::whole(1, u32::MAX), allow_hyphen_values = true, help_heading = "How long: ends at the first of these")]
     spp: Option<u32>,
@@ -185,6 +189,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(exposure) => exposure,
         None => Exposure::new(options.width, options.height, range.start)?,
     };
+    let size = [options.width, options.height];
+    let mut live = Live::new(&arguments.live, &arguments.picture, &label.scene, size)?;
     let mut telling = Telling::new(arguments.progress, options.target, arguments.quiet);
     let mut work = || {
         gonio_render::expose(
@@ -194,6 +200,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             &mut exposure,
             |progress, exposure| {
                 telling.update(progress);
+                live.update(&exposure.film);
                 if let Some(checkpoint) = &mut checkpoint {
                     checkpoint.keep(exposure);
                 }
@@ -218,6 +225,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     telling.finish();
     let stop = stop?;
+    live.show(&exposure.film);
     // A part is whole or not there.
     let complete = stop != Stop::Interrupted;
     let wanted = outputs.iter().filter(|path| complete || !is_part(path));
