@@ -2,6 +2,9 @@
 
 use super::{Files, Job, line, quoted};
 
+/// Times that a part may be put back into the queue.
+const TURNS: u32 = 1000;
+
 pub(super) fn files(job: &Job) -> Files {
     let Job {
         name,
@@ -43,8 +46,8 @@ while :; do
     status=$?
     [ \"$status\" -gt 128 ] && kill -0 \"$part\" 2>/dev/null || break
 done
-# Interrupted, with its samples kept: it goes on in the next turn.
-if [ \"$status\" -eq 4 ]; then
+# Interrupted, with its samples kept, or killed: it goes on in the next turn.
+if [ \"$status\" -eq 4 ] || [ \"$status\" -gt 128 ] && [ \"${{SLURM_RESTART_COUNT:-0}}\" -lt {TURNS} ]; then
     scontrol requeue \"${{SLURM_ARRAY_JOB_ID}}_${{SLURM_ARRAY_TASK_ID}}\"
 fi
 exit \"$status\"
