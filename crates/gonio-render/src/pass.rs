@@ -350,7 +350,7 @@ mod tests {
                 let together = waves.take(&camera, &options, y, &mut many, 3..10);
                 assert_eq!(alone, together, "{guide:?}, row {y}");
                 assert_eq!(one, many, "{guide:?}, row {y}");
-                lit += one.iter().filter(|p| p.radiance[0] > 0.0).count();
+                lit += one.iter().filter(|p| p.mean()[0] > 0.0).count();
             }
             // The test would not notice anything in the dark.
             assert!(lit > 500, "{lit}");

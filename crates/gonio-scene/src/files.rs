@@ -22,7 +22,10 @@ pub enum Files {
 
 /// Who is told the path and the bytes of each file that is read.
 #[derive(Clone)]
-pub struct Watch(pub Arc<dyn Fn(&Path, &[u8]) + Send + Sync>);
+pub struct Watch(pub Arc<Told>);
+
+/// What is done with a path and the bytes of its file.
+pub type Told = dyn Fn(&Path, &[u8]) + Send + Sync;
 
 impl fmt::Debug for Watch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -19,7 +19,7 @@ pub mod texture;
 
 pub use camera::{Camera, Projection};
 pub use error::SceneError;
-pub use files::{Files, Watch};
+pub use files::{Files, Told, Watch};
 pub use geometry::{Aabb, AreaSample, Geometry, Instance, Shape, SurfacePoint, Surfaces};
 pub use interior::{Body, Interior};
 pub use light::{Light, LightRef, LightSample, LightSamples, LightTarget, Lights, SpotCone};
