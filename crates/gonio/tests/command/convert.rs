@@ -172,7 +172,7 @@ fn what_is_no_panorama_is_named() {
         ("zeros.exr", &b""[..]),
         (
             "huge.hdr",
-            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 8192\n",
+            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32768 +X 65536\n",
         ),
         ("huge.png", b"\x89PNG\r\n\x1a\n"),
         ("huge.tif", b"II*\0"),

@@ -124,12 +124,12 @@ fn a_viewer_that_is_not_there_is_an_error() {
         .unwrap()
         .to_string();
     place.bad(
-        &["render", "ball.toml", "--tev", &address],
+        &["render", "ball.toml", "-q", "--tev", &address],
         3,
         &["no viewer answers"],
     );
     place.bad(
-        &["render", "ball.toml", "--tev", "nowhere"],
+        &["render", "ball.toml", "-q", "--tev", "nowhere"],
         3,
         &["--tev nowhere"],
     );

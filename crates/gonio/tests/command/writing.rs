@@ -18,9 +18,9 @@ fn outputs_are_checked_before_time_is_spent() {
         ("nowhere/a.png", 3, ["nowhere", "mkdir"]),
         ("file/a.exr", 3, ["file", "not a folder"]),
         ("folder.png", 3, ["folder.png", "this is a folder"]),
-        ("a.jpg", 2, [".jpg", ".exr, .hdr or .png"]),
+        ("a.jpg", 2, [".jpg", ".exr, .hdr, .png or .gonio"]),
         ("a.PGN", 2, [".pgn", "did you mean .png?"]),
-        ("picture", 2, ["no extension", ".exr, .hdr or .png"]),
+        ("picture", 2, ["no extension", ".exr, .hdr, .png or .gonio"]),
     ] {
         place.bad(&long(output), code, &words);
         // The second output counts as well as the first.
