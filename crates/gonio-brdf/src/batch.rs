@@ -8,7 +8,7 @@
 //! The functions of three components that a renderer calls, [`eval_and_pdf`] and [`sample`], are compiled with this crate; the generic ones
 //! with whoever calls them, which takes minutes.
 
-#![cfg_attr(fuzzing, allow(dead_code, unused_variables))]
+#![cfg_attr(any(fuzzing, test), allow(dead_code, unused_variables))]
 
 use crate::model::{Castable, Composite, Visitor};
 use crate::{Brdf, Model, Sample};
@@ -337,8 +337,8 @@ impl<const N: usize, const L: usize> Brdf<Lanes<L>, N> for Singly<'_, N> {
 
 /// Runs a batch of a model.
 fn run<T: Batch<N>, const N: usize>(set: InstructionSet, model: &Model<f32, N>, batch: T) {
-    // Programs that fuzz readers would take minutes more to compile with lanes that they have no use for.
-    #[cfg(not(fuzzing))]
+    // Programs that fuzz readers, and the tests beside the code, would take minutes more to compile with lanes that they have no use for.
+    #[cfg(not(any(fuzzing, test)))]
     if has_lanes(set) {
         model.visit(On(set, batch));
         return;

@@ -14,7 +14,7 @@ const ROWS: usize = 4;
 /// The mean radiance under the kernel around each axis: a sum over all texels of a panorama, each divided until the lobe sees no
 /// single points. For pictures that are no panoramas the finest cells of the tree are the points.
 ///
-/// Error: rounding of about 1e-6, and what a sum over points misses that are h apart, h at most a sixth of the lobe's width: (h/width)²/24 of the light
+/// Error: rounding of about 1e-6, and what a sum over points misses that are h apart, h at most a sixth of the lobe's width: (h/width)²/12 of the light
 /// of a single texel, of either sign.
 pub fn reference(
     environment: &Environment,
