@@ -8,7 +8,7 @@
 //! The functions of three components that a renderer calls, [`eval_and_pdf`] and [`sample`], are compiled with this crate; the generic ones
 //! with whoever calls them, which takes minutes.
 
-#![cfg_attr(any(fuzzing, test), allow(dead_code, unused_variables))]
+#![cfg_attr(any(fuzzing, test), allow(unused_variables))]
 
 use crate::model::{Castable, Composite, Visitor};
 use crate::{Brdf, Model, Sample};

@@ -26,6 +26,8 @@
 
 // Loops over an index are what vectorises over lanes, and colours are short arrays walked side by side.
 #![allow(clippy::needless_range_loop)]
+// Where batches are compiled without lanes, what leads to them has no use.
+#![cfg_attr(any(fuzzing, test), allow(dead_code))]
 
 mod brdf;
 mod check;

@@ -37,7 +37,7 @@ pub(crate) struct Level {
 type Sums = [f32; 7];
 
 /// Columns of points at most, unless the picture itself has more: 8192 stand 8e-4 rad apart.
-pub(crate) const MOST_COLUMNS: usize = 8192;
+const MOST_COLUMNS: usize = 8192;
 
 /// Share of the mean luminance that a black point still has in the place of its cell.
 const DARK_SHARE: f64 = 1e-3;

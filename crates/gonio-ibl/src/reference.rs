@@ -2,7 +2,7 @@
 
 use crate::gather::{Axes, Lights, gather};
 use crate::kernel::Kernel;
-use crate::nodes::{LightTree, MOST_COLUMNS, Points, subdivision};
+use crate::nodes::{LightTree, Points, subdivision};
 use gonio_env::Environment;
 use gonio_num::Vec3;
 use rayon::prelude::*;
@@ -14,8 +14,7 @@ const ROWS: usize = 4;
 /// The mean radiance under the kernel around each axis: a sum over all texels of a panorama, each divided until the lobe sees no
 /// single points. For pictures that are no panoramas the finest cells of the tree are the points.
 ///
-/// Error: rounding of about 1e-6, and what a sum over points misses that are h apart, h at most a sixth of the lobe's width: (h/width)²/12 of the light
-/// of a single texel, of either sign.
+/// Rounding: about 1e-6.
 pub fn reference(
     environment: &Environment,
     tree: &LightTree,
@@ -27,13 +26,8 @@ pub fn reference(
     }
     let sums = match environment.lat_long_texels() {
         Some(texels) => {
-            // Twice as fine as what the tree is made of, so that its points are checked as well; and even where memory allows, so that no point
-            // lies where the interpolation bends, which costs most of the digits.
-            let fine = subdivision(&texels, 0.5 * kernel.width());
-            let split = match fine.next_multiple_of(2) {
-                even if even * texels.width <= MOST_COLUMNS => even,
-                _ => fine,
-            };
+            // Twice as fine as what the tree is made of, so that its points are checked as well.
+            let split = subdivision(&texels, 0.5 * kernel.width());
             let points = Points::new(&texels, split);
             let chunks = points.rows().div_ceil(ROWS);
             let fill = |chunk: usize, lights: &mut Lights| {

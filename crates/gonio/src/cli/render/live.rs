@@ -2,7 +2,7 @@
 
 use super::product::PictureArguments;
 use crate::cli::destination;
-use crate::cli::failure::Failure;
+use crate::cli::failure::{Failure, chain};
 use crate::cli::terminal::warn;
 use gonio_image::Image;
 use gonio_render::Film;
@@ -55,7 +55,8 @@ impl<'a> Live<'a> {
         let tev = match &arguments.tev {
             None => None,
             Some(address) => Some(Viewer::find(address, title, size).map_err(|e| {
-                Failure::input(format!("--tev {address}: no viewer answers: {e}"))
+                let cause = chain(&e);
+                Failure::input(format!("--tev {address}: no viewer answers: {cause}"))
                     .with_help("start tev first; it listens on 127.0.0.1:14158")
             })?),
         };
