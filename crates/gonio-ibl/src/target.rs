@@ -9,7 +9,7 @@
 //! | `unity` | 1.7/1.4 − √(2.89/1.96 − 2.8/1.96 · k/6) | x right, y up, z forward | irradiance/π, times the constants | (bias, whole) over √μ |
 //! | `custom` | k/(n−1) | OpenGL's | as [`crate::harmonics`] | (scale, bias) |
 //!
-//! Sources, each read, and what was found there:
+//! Sources, and what they say; `PMREMGenerator.js`, glTF-IBL-Sampler, `ibl.glsl` and Unreal Engine's files by what is published of them, the others read:
 //!
 //! - glTF: Khronos' glTF-IBL-Sampler (`lib/source/lib.cpp`) and glTF-Sample-Viewer (`source/Renderer/shaders/ibl.glsl`: R F₀ + G at (n·v, roughness)).
 //!   `extensions/2.0/Vendor/EXT_lights_image_based/README.md` says "irradiance", refers to Ramamoorthi & Hanrahan 2001, and leaves the basis's sign open.

@@ -138,21 +138,9 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
 /// If this machine doesn't have it ([`InstructionSet::is_available`]).
 #[inline]
 pub fn dispatch_on<K: Kernel>(set: InstructionSet, kernel: K) -> K::Output {
-    assert!(
-        set.is_available(),
-        "this machine has no {} instructions",
-        set.name()
-    );
     match set {
         InstructionSet::Baseline => kernel.run::<8>(),
-        #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx2 => x86::run_avx2(kernel),
-        #[cfg(target_arch = "x86_64")]
-        InstructionSet::Avx512 => x86::run_avx512(kernel),
-        #[cfg(not(target_arch = "x86_64"))]
-        InstructionSet::Avx2 | InstructionSet::Avx512 => {
-            unreachable!("only x86-64 machines have it")
-        }
+        wide => dispatch_wide(wide, kernel),
     }
 }
 

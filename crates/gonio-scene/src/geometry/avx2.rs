@@ -57,34 +57,23 @@ pub(super) fn occluded(kernel: Avx2, geometry: &Geometry, ray: &Ray) -> bool {
 
 /// [`Geometry::search_meshes`] with this kernel.
 #[inline]
-pub(super) fn nearest_of_meshes(
+pub(super) fn search_meshes<const ANY: bool>(
     kernel: Avx2,
     geometry: &Geometry,
     ray: &Ray,
     nearest: Nearest,
 ) -> Nearest {
     #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-    fn run(kernel: Avx2, geometry: &Geometry, ray: &Ray, nearest: Nearest) -> Nearest {
-        geometry.search_meshes::<Avx2, false>(kernel, ray, nearest)
+    fn run<const ANY: bool>(
+        kernel: Avx2,
+        geometry: &Geometry,
+        ray: &Ray,
+        nearest: Nearest,
+    ) -> Nearest {
+        geometry.search_meshes::<Avx2, ANY>(kernel, ray, nearest)
     }
     // SAFETY: invariant 1.
-    unsafe { run(kernel, geometry, ray, nearest) }
-}
-
-/// [`Geometry::search_meshes`] for anything at all, with this kernel.
-#[inline]
-pub(super) fn any_of_meshes(
-    kernel: Avx2,
-    geometry: &Geometry,
-    ray: &Ray,
-    nearest: Nearest,
-) -> Nearest {
-    #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
-    fn run(kernel: Avx2, geometry: &Geometry, ray: &Ray, nearest: Nearest) -> Nearest {
-        geometry.search_meshes::<Avx2, true>(kernel, ray, nearest)
-    }
-    // SAFETY: invariant 1.
-    unsafe { run(kernel, geometry, ray, nearest) }
+    unsafe { run::<ANY>(kernel, geometry, ray, nearest) }
 }
 
 /// A [`BoxRay`] in registers.

@@ -116,7 +116,7 @@ impl Geometry {
         match self.choice {
             Choice::Portable => self.search_meshes::<Portable, false>(Portable, ray, nearest),
             #[cfg(target_arch = "x86_64")]
-            Choice::Avx2(kernel) => super::avx2::nearest_of_meshes(kernel, self, ray, nearest),
+            Choice::Avx2(kernel) => super::avx2::search_meshes::<false>(kernel, self, ray, nearest),
         }
     }
 
@@ -126,7 +126,7 @@ impl Geometry {
         let found = match self.choice {
             Choice::Portable => self.search_meshes::<Portable, true>(Portable, ray, nothing),
             #[cfg(target_arch = "x86_64")]
-            Choice::Avx2(kernel) => super::avx2::any_of_meshes(kernel, self, ray, nothing),
+            Choice::Avx2(kernel) => super::avx2::search_meshes::<true>(kernel, self, ray, nothing),
         };
         found.hit().is_some()
     }
