@@ -47,6 +47,7 @@ mod kernel;
 pub mod lights;
 mod maps;
 mod nodes;
+mod points;
 mod reference;
 mod sampling;
 mod target;

@@ -7,10 +7,11 @@
 
 use crate::cube::{place, solid_angle, towards};
 use crate::gather::Lights;
+use crate::points::Points;
 use gonio_env::{Environment, LatLongTexels};
-use gonio_num::{Real, Vec3};
+use gonio_num::Vec3;
 use rayon::prelude::*;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// Smallest edge of the finest cube: cells of 0.7°, small enough for the widest kernels at the smallest tolerance.
 const COARSEST: usize = 128;
@@ -36,9 +37,6 @@ pub(crate) struct Level {
 /// Sums of a cell: solid angle, flux of each channel, Σ weight · direction.
 type Sums = [f32; 7];
 
-/// Columns of points at most, unless the picture itself has more: 8192 stand 8e-4 rad apart.
-const MOST_COLUMNS: usize = 8192;
-
 /// Share of the mean luminance that a black point still has in the place of its cell.
 const DARK_SHARE: f64 = 1e-3;
 
@@ -53,9 +51,8 @@ impl LightTree {
     }
 
     fn of_panorama(texels: &LatLongTexels<'_>, mean: [f64; 3], width: f64) -> Self {
-        let points = Points::new(texels, subdivision(texels, width));
-        let finest = texels.width.div_ceil(4) * points.split;
-        let size = size_for(finest, width);
+        let points = Points::of_tree(texels, width);
+        let size = size_for(points.columns().div_ceil(4), width);
         let dark = DARK_SHARE * luminance(mean);
         let faces: Vec<Vec<Sums>> = (0..6)
             .into_par_iter()
@@ -143,15 +140,6 @@ fn size_for(picture: usize, width: f64) -> usize {
         .clamp(COARSEST, LARGEST)
 }
 
-/// In how many parts each side of a texel is divided, so that a lobe of `width` sees no single points.
-///
-/// A sum over a grid of step h misses the integral over a GGX lobe by about exp(−2π width/h), and the interpolated picture by the
-/// bend of the lobe over h: both are below 1e-3 at width = 3 h.
-pub(crate) fn subdivision(texels: &LatLongTexels<'_>, width: f64) -> usize {
-    let step = PI / texels.height.min(texels.width.div_ceil(2)) as f64;
-    ((3.0 * step / width).ceil() as usize).clamp(1, (MOST_COLUMNS / texels.width).max(1))
-}
-
 pub(crate) fn luminance(rgb: [f64; 3]) -> f64 {
     0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
 }
@@ -232,101 +220,4 @@ fn cells(sums: &[Sums]) -> Lights {
         }
     }
     lights
-}
-
-/// The points of a panorama: each texel, or its parts, with the solid angle of that part and the interpolated radiance.
-pub(crate) struct Points<'a> {
-    texels: LatLongTexels<'a>,
-    /// Parts of a texel along each side.
-    pub split: usize,
-    /// sin and cos of the longitude of each column of parts, from the seam.
-    turns: Vec<(f64, f64)>,
-    /// The texels left and right of each column of parts, and the share of the right one.
-    columns: Vec<(usize, usize, f32)>,
-    /// World directions of the picture's axes.
-    axes: [Vec3<f64>; 3],
-}
-
-impl<'a> Points<'a> {
-    pub fn new(texels: &LatLongTexels<'a>, split: usize) -> Self {
-        let width = texels.width * split;
-        let turns = (0..width)
-            .map(|i| {
-                let phi = TAU * ((i as f64 + 0.5) / width as f64 - 0.5);
-                (Real::sin(phi), Real::cos(phi))
-            })
-            .collect();
-        let columns = (0..width)
-            .map(|i| {
-                let x = (i as f64 + 0.5) / split as f64 - 0.5;
-                let left = x.floor();
-                let n = texels.width as i64;
-                let at = |k: i64| k.rem_euclid(n) as usize;
-                (at(left as i64), at(left as i64 + 1), (x - left) as f32)
-            })
-            .collect();
-        let axis = |x: f64, y: f64, z: f64| texels.to_world(Vec3::new(x, y, z));
-        Self {
-            texels: *texels,
-            split,
-            turns,
-            columns,
-            axes: [
-                axis(1.0, 0.0, 0.0),
-                axis(0.0, 1.0, 0.0),
-                axis(0.0, 0.0, 1.0),
-            ],
-        }
-    }
-
-    /// Rows of points, from the zenith down.
-    pub fn rows(&self) -> usize {
-        self.texels.height * self.split
-    }
-
-    /// Whether any point of a row may meet the face around `axis`, which reaches to cos = 1/√3 from it.
-    pub fn may_meet(&self, row: usize, axis: Vec3<f64>) -> bool {
-        let theta = PI * (row as f64 + 0.5) / self.rows() as f64;
-        let rise = self.axes[1].dot(axis);
-        let nearest =
-            Real::cos(theta) * rise + Real::sin(theta) * (1.0 - rise * rise).max(0.0).sqrt();
-        nearest > 0.577
-    }
-
-    /// Calls `f` with the direction, solid angle and radiance of each point of a row.
-    #[inline(always)]
-    pub fn each_in_row(&self, row: usize, mut f: impl FnMut(Vec3<f64>, f64, [f32; 3])) {
-        let rows = self.rows();
-        let step = PI / rows as f64;
-        let theta = step * (row as f64 + 0.5);
-        let (sin, cos) = (Real::sin(theta), Real::cos(theta));
-        // ∫ sin θ dθ over the part: 2 sin θ sin(step/2).
-        let w = TAU / self.turns.len() as f64 * 2.0 * sin * Real::sin(0.5 * step);
-        let [ax, ay, az] = self.axes;
-        let up = ay * cos;
-        let t = &self.texels;
-        let scale = t.scale;
-        let y = ((row as f64 + 0.5) / self.split as f64 - 0.5).clamp(0.0, (t.height - 1) as f64);
-        let above = (y as usize).min(t.height - 1);
-        let below = (above + 1).min(t.height - 1);
-        let down = (y - above as f64) as f32;
-        let upper = &t.texels[above * t.width..(above + 1) * t.width];
-        let lower = &t.texels[below * t.width..(below + 1) * t.width];
-        for (&(sin_phi, cos_phi), &(left, right, s)) in self.turns.iter().zip(&self.columns) {
-            let d = up + ax * (sin * sin_phi) - az * (sin * cos_phi);
-            let mut rgb = [0.0; 3];
-            if self.split == 1 {
-                for c in 0..3 {
-                    rgb[c] = upper[left][c] * scale[c];
-                }
-            } else {
-                for c in 0..3 {
-                    let high = upper[left][c] * (1.0 - s) + upper[right][c] * s;
-                    let low = lower[left][c] * (1.0 - s) + lower[right][c] * s;
-                    rgb[c] = (high * (1.0 - down) + low * down) * scale[c];
-                }
-            }
-            f(d, w, rgb);
-        }
-    }
 }
