@@ -12,10 +12,12 @@
 use super::kernel::{BEYOND, Eight, Kernel};
 use super::mesh_tree::MeshTree;
 use super::nearest::Nearest;
+use super::sphere_tree::{SphereBlock, SphereRay};
 use super::tree::{Node, WIDTH};
 use super::triangle::{TriangleBlock, TriangleRay};
 use super::walk::BoxRay;
 use super::{Geometry, Hit, Ray};
+use gonio_num::Vectors;
 use std::arch::x86_64::*;
 
 /// Proof that this processor has AVX2.
@@ -55,25 +57,24 @@ pub(super) fn occluded(kernel: Avx2, geometry: &Geometry, ray: &Ray) -> bool {
     unsafe { run(kernel, geometry, ray) }
 }
 
-/// [`Geometry::search_meshes`] with this kernel.
-#[inline]
-pub(super) fn search_meshes<const ANY: bool>(
+/// [`Geometry::search_many`] with this kernel.
+pub(super) fn search_many<const ANY: bool>(
     kernel: Avx2,
     geometry: &Geometry,
-    ray: &Ray,
-    nearest: Nearest,
-) -> Nearest {
+    rays: [&Vectors; 2],
+    nearest: &mut [Nearest],
+) {
     #[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
     fn run<const ANY: bool>(
         kernel: Avx2,
         geometry: &Geometry,
-        ray: &Ray,
-        nearest: Nearest,
-    ) -> Nearest {
-        geometry.search_meshes::<Avx2, ANY>(kernel, ray, nearest)
+        rays: [&Vectors; 2],
+        nearest: &mut [Nearest],
+    ) {
+        geometry.search_many::<Avx2, ANY>(kernel, rays, nearest);
     }
     // SAFETY: invariant 1.
-    unsafe { run::<ANY>(kernel, geometry, ray, nearest) }
+    unsafe { run::<ANY>(kernel, geometry, rays, nearest) }
 }
 
 /// A [`BoxRay`] in registers.
@@ -91,6 +92,16 @@ pub(crate) struct Triangles {
     axes: [usize; 3],
     origin: [__m256; 3],
     shear: [__m256; 3],
+}
+
+/// A [`SphereRay`] in registers.
+#[derive(Clone, Copy)]
+pub(crate) struct Spheres {
+    origin: [__m256; 3],
+    direction: [__m256; 3],
+    inverse: __m256,
+    step: __m256,
+    pad: __m256,
 }
 
 /// Eight numbers from an aligned array.
@@ -129,9 +140,20 @@ fn edge(_: Avx2, px: __m256, py: __m256, qx: __m256, qy: __m256) -> __m256 {
     unsafe { _mm256_sub_ps(_mm256_mul_ps(px, qy), _mm256_mul_ps(py, qx)) }
 }
 
+/// x x' + y y' + z z', in that order.
+#[inline(always)]
+fn dot(_: Avx2, a: [__m256; 3], b: [__m256; 3]) -> __m256 {
+    // SAFETY: invariant 1.
+    unsafe {
+        let xy = _mm256_add_ps(_mm256_mul_ps(a[0], b[0]), _mm256_mul_ps(a[1], b[1]));
+        _mm256_add_ps(xy, _mm256_mul_ps(a[2], b[2]))
+    }
+}
+
 impl Kernel for Avx2 {
     type Boxes = Boxes;
     type Triangles = Triangles;
+    type Spheres = Spheres;
 
     #[inline(always)]
     fn prepare_boxes(self, ray: &BoxRay) -> Boxes {
@@ -149,6 +171,18 @@ impl Kernel for Avx2 {
             axes: ray.axes,
             origin: splat3(self, ray.origin),
             shear: splat3(self, ray.shear),
+        }
+    }
+
+    #[inline(always)]
+    fn prepare_spheres(self, ray: &SphereRay) -> Spheres {
+        let [inverse, step, pad] = splat3(self, [ray.inverse, ray.step, ray.pad]);
+        Spheres {
+            origin: splat3(self, ray.origin),
+            direction: splat3(self, ray.direction),
+            inverse,
+            step,
+            pad,
         }
     }
 
@@ -221,6 +255,30 @@ impl Kernel for Avx2 {
                 _mm256_cmp_ps::<_CMP_LE_OQ>(first, limit),
             );
             _mm256_movemask_ps(_mm256_and_ps(inside, within)) as u32
+        }
+    }
+
+    #[inline(always)]
+    fn spheres(self, block: &SphereBlock, ray: &Spheres, t_max: f32) -> u32 {
+        // SAFETY: invariants 1 and 2.
+        unsafe {
+            let [dx, dy, dz] = ray.direction;
+            let x = _mm256_sub_ps(load(self, &block.centre[0]), ray.origin[0]);
+            let y = _mm256_sub_ps(load(self, &block.centre[1]), ray.origin[1]);
+            let z = _mm256_sub_ps(load(self, &block.centre[2]), ray.origin[2]);
+            let along = dot(self, [x, y, z], ray.direction);
+            let t = _mm256_mul_ps(along, ray.inverse);
+            let x = _mm256_sub_ps(x, _mm256_mul_ps(dx, t));
+            let y = _mm256_sub_ps(y, _mm256_mul_ps(dy, t));
+            let z = _mm256_sub_ps(z, _mm256_mul_ps(dz, t));
+            let radius = _mm256_add_ps(load(self, &block.radius), ray.pad);
+            let half = _mm256_mul_ps(radius, ray.step);
+            let off = dot(self, [x, y, z], [x, y, z]);
+            let beside = _mm256_cmp_ps::<_CMP_GT_OQ>(off, _mm256_mul_ps(radius, radius));
+            let beyond = _mm256_cmp_ps::<_CMP_GT_OQ>(_mm256_sub_ps(t, half), _mm256_set1_ps(t_max));
+            let behind = _mm256_cmp_ps::<_CMP_LT_OQ>(_mm256_add_ps(t, half), _mm256_setzero_ps());
+            let missed = _mm256_or_ps(beside, _mm256_or_ps(beyond, behind));
+            block.valid & !(_mm256_movemask_ps(missed) as u32)
         }
     }
 

@@ -3,6 +3,7 @@
 use super::Ray;
 use super::mesh_tree::MeshTree;
 use super::nearest::Nearest;
+use super::sphere_tree::{SphereBlock, SphereRay};
 use super::tree::{Node, WIDTH};
 use super::triangle::{LANES, TriangleBlock, TriangleRay};
 use super::walk::BoxRay;
@@ -21,14 +22,19 @@ pub(crate) trait Kernel: Copy {
     type Boxes;
     /// A ray as [`Kernel::triangles`] wants it.
     type Triangles;
+    /// A ray as [`Kernel::spheres`] wants it.
+    type Spheres;
 
     fn prepare_boxes(self, ray: &BoxRay) -> Self::Boxes;
     fn prepare_triangles(self, ray: &TriangleRay) -> Self::Triangles;
+    fn prepare_spheres(self, ray: &SphereRay) -> Self::Spheres;
     /// A bit for each child whose box the ray may meet in \[0, t_max\], and where it enters each.
     fn boxes(self, node: &Node, ray: &Self::Boxes, t_max: f32) -> (u32, Eight);
     /// A bit for each triangle that the ray may meet in (0, t_max]: the edge functions don't disagree in sign, and the
     /// corners lie neither all behind the origin nor all beyond t_max.
     fn triangles(self, block: &TriangleBlock, ray: &Self::Triangles, t_max: f32) -> u32;
+    /// A bit for each sphere that the ray may meet in (0, t_max\].
+    fn spheres(self, block: &SphereBlock, ray: &Self::Spheres, t_max: f32) -> u32;
     /// Announces that `item` will be read.
     fn prefetch<T>(self, item: &T);
     /// [`MeshTree::search`], compiled for this kernel as a function of its own: its loop then has all registers to itself.
@@ -62,6 +68,7 @@ fn max(a: f32, b: f32) -> f32 {
 impl Kernel for Portable {
     type Boxes = BoxRay;
     type Triangles = TriangleRay;
+    type Spheres = SphereRay;
 
     #[inline(always)]
     fn prepare_boxes(self, ray: &BoxRay) -> BoxRay {
@@ -70,6 +77,11 @@ impl Kernel for Portable {
 
     #[inline(always)]
     fn prepare_triangles(self, ray: &TriangleRay) -> TriangleRay {
+        *ray
+    }
+
+    #[inline(always)]
+    fn prepare_spheres(self, ray: &SphereRay) -> SphereRay {
         *ray
     }
 
@@ -131,6 +143,28 @@ impl Kernel for Portable {
             mask |= u32::from(inside && within) << i;
         }
         mask
+    }
+
+    #[inline(always)]
+    fn spheres(self, block: &SphereBlock, ray: &SphereRay, t_max: f32) -> u32 {
+        let ([ox, oy, oz], [dx, dy, dz]) = (ray.origin, ray.direction);
+        let mut missed = 0;
+        for i in 0..WIDTH {
+            let (x, y, z) = (
+                block.centre[0][i] - ox,
+                block.centre[1][i] - oy,
+                block.centre[2][i] - oz,
+            );
+            // t where the line is nearest to the centre, and the way from there.
+            let t = (x * dx + y * dy + z * dz) * ray.inverse;
+            let (x, y, z) = (x - dx * t, y - dy * t, z - dz * t);
+            let radius = block.radius[i] + ray.pad;
+            let half = radius * ray.step;
+            let off = x * x + y * y + z * z;
+            let missing = off > radius * radius || t - half > t_max || t + half < 0.0;
+            missed |= u32::from(missing) << i;
+        }
+        block.valid & !missed
     }
 
     #[inline(always)]

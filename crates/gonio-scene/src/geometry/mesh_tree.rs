@@ -68,22 +68,14 @@ impl MeshTree {
         instance: u32,
         nearest: &mut Nearest,
     ) -> bool {
-        let exact = TriangleRay::new(ray.origin, ray.direction);
-        let mut visitor = Triangles::<K, ANY> {
-            kernel,
-            blocks: &self.blocks,
-            prepared: kernel.prepare_triangles(&exact),
-            exact,
-            instance,
-            nearest,
-            found: false,
-        };
+        let mut visitor = Triangles::<K, ANY>::new(kernel, self, ray, instance, nearest);
         walk(kernel, &self.tree, boxes, &mut visitor);
         ANY && visitor.found
     }
 }
 
-struct Triangles<'a, K: Kernel, const ANY: bool> {
+/// What a ray does at the leaves of a mesh.
+pub(crate) struct Triangles<'a, K: Kernel, const ANY: bool> {
     kernel: K,
     blocks: &'a [TriangleBlock],
     prepared: K::Triangles,
@@ -91,6 +83,28 @@ struct Triangles<'a, K: Kernel, const ANY: bool> {
     instance: u32,
     nearest: &'a mut Nearest,
     found: bool,
+}
+
+impl<'a, K: Kernel, const ANY: bool> Triangles<'a, K, ANY> {
+    #[inline(always)]
+    pub(crate) fn new(
+        kernel: K,
+        tree: &'a MeshTree,
+        ray: &Ray,
+        instance: u32,
+        nearest: &'a mut Nearest,
+    ) -> Self {
+        let exact = TriangleRay::new(ray.origin, ray.direction);
+        Self {
+            kernel,
+            blocks: &tree.blocks,
+            prepared: kernel.prepare_triangles(&exact),
+            exact,
+            instance,
+            nearest,
+            found: false,
+        }
+    }
 }
 
 impl<K: Kernel, const ANY: bool> Visitor for Triangles<'_, K, ANY> {

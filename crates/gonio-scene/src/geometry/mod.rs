@@ -17,6 +17,7 @@ mod query;
 mod sample;
 mod shape;
 mod simple;
+mod sphere_tree;
 mod stack;
 mod surface;
 #[cfg(test)]
@@ -38,6 +39,7 @@ use placed::{Kind, Placed};
 use rayon::prelude::*;
 use sample::AreaTable;
 use simple::Simple;
+use sphere_tree::SphereTree;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 use tree::{Purpose, WideTree};
@@ -52,6 +54,9 @@ pub struct Geometry {
     instances: Vec<Instance>,
     placed: Vec<Placed>,
     trees: Vec<MeshTree>,
+    /// The spheres, where they are many.
+    spheres: SphereTree,
+    /// Over all other instances.
     top: WideTree,
     /// Instances in the order of the leaves of `top`.
     order: Vec<u32>,
@@ -117,9 +122,15 @@ impl Geometry {
             placed.push(Placed::new(i, instance, shape, &boxes[s], kind)?);
         }
 
+        let (simple, spheres) = Simple::of(&placed);
+        let spheres = SphereTree::build(&placed, &spheres);
         // A mesh without triangles has no box, and no place in the tree.
+        let has_place = |p: &Placed| {
+            let elsewhere = p.kind == Kind::Sphere && !spheres.blocks.is_empty();
+            !(p.bounds.is_empty() || elsewhere)
+        };
         let visible: Vec<u32> = (0..placed.len() as u32)
-            .filter(|&i| !placed[i as usize].bounds.is_empty())
+            .filter(|&i| has_place(&placed[i as usize]))
             .collect();
         let mut order = Vec::with_capacity(visible.len());
         let top = WideTree::build(
@@ -131,14 +142,14 @@ impl Geometry {
                 (first, leaf.len() as u32)
             },
         );
-        let bounds = top.bounds;
-        let simple = Simple::of(&placed);
+        let bounds = top.bounds.union(&spheres.tree.bounds);
         let areas = instances.iter().map(|_| OnceLock::new()).collect();
         Ok(Self {
             shapes,
             instances,
             placed,
             trees,
+            spheres,
             top,
             order,
             bounds,
@@ -175,7 +186,8 @@ impl Geometry {
 
     /// Bytes that the trees hold, beside the meshes themselves.
     pub fn tree_bytes(&self) -> usize {
-        self.top.bytes() + self.trees.iter().map(MeshTree::bytes).sum::<usize>()
+        let meshes = self.trees.iter().map(MeshTree::bytes).sum::<usize>();
+        self.top.bytes() + self.spheres.bytes() + meshes
     }
 
     fn count(&self, of: impl Fn(&TriangleMesh, &MeshTree) -> usize) -> usize {

@@ -27,17 +27,10 @@ impl Nearest {
         }
     }
 
-    /// The best one so far is `hit`.
+    /// Whether there is any.
     #[inline(always)]
-    pub(crate) fn of(hit: &Hit) -> Self {
-        Self {
-            t: hit.t,
-            instance: hit.instance,
-            primitive: hit.primitive,
-            u: hit.u,
-            v: hit.v,
-            found: true,
-        }
+    pub(crate) fn found(&self) -> bool {
+        self.found
     }
 
     /// Takes a hit if it is nearer, or as near with a lower (instance, primitive). A NaN is never taken.

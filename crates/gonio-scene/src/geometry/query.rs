@@ -1,11 +1,14 @@
 //! The two ray queries, and the choice of instructions for them.
 
 use super::kernel::{Kernel, Portable};
+use super::mesh_tree::{MeshTree, Triangles};
 use super::nearest::Nearest;
 use super::placed::{Kind, Placed};
 use super::shape::{cross_flat, cross_sphere};
-use super::walk::{BoxRay, Visitor, walk};
+use super::sphere_tree::Spheres;
+use super::walk::{BoxRay, Rays, Visitor, walk, walk_many};
 use super::{Geometry, Hit, Ray};
+use gonio_num::Vectors;
 
 /// Which kernel this processor gets.
 #[derive(Debug, Clone, Copy)]
@@ -64,13 +67,14 @@ impl Geometry {
         if !ray.is_valid() {
             return nearest;
         }
-        let boxes = BoxRay::new(ray.origin, ray.direction, &self.top.bounds);
+        let mut nearest = nearest;
+        let boxes = BoxRay::new(ray.origin, ray.direction, &self.bounds);
         let mut visitor = Instances::<K, ANY> {
             kernel,
             geometry: self,
-            ray,
-            boxes: &boxes,
-            nearest,
+            ray: *ray,
+            boxes,
+            nearest: &mut nearest,
         };
         if self.order.len() == 1 {
             // A mesh's own tree begins with the box around it.
@@ -78,66 +82,194 @@ impl Geometry {
         } else {
             walk(kernel, &self.top, &boxes, &mut visitor);
         }
-        visitor.nearest
+        if !(self.spheres.blocks.is_empty() || ANY && nearest.found()) {
+            let (tree, bounds) = (&self.spheres, &self.bounds);
+            let (boxes, mut visitor) =
+                Spheres::<K, ANY>::new(kernel, tree, &self.placed, ray, bounds, &mut nearest);
+            walk(kernel, &tree.tree, &boxes, &mut visitor);
+        }
+        nearest
+    }
+
+    /// Both queries for many rays, each with the best hit so far: of everything but the shapes that [`Simple`](super::simple::Simple) has every
+    /// ray tested with.
+    #[inline(always)]
+    pub(super) fn search_many<K: Kernel, const ANY: bool>(
+        &self,
+        kernel: K,
+        rays: [&Vectors; 2],
+        nearest: &mut [Nearest],
+    ) {
+        if !self.simple.few {
+            let mut rays = InstanceRays::<K, ANY> {
+                kernel,
+                geometry: self,
+                open: Open::new(rays, nearest),
+            };
+            walk_many(kernel, &self.top, self.top.bytes(), &mut rays);
+        }
+        for &(instance, tree) in &self.simple.meshes {
+            let tree = &self.trees[tree as usize];
+            let mut rays = MeshRays::<K, ANY> {
+                kernel,
+                geometry: self,
+                tree,
+                instance,
+                open: Open::new(rays, nearest),
+            };
+            walk_many(kernel, &tree.tree, tree.bytes(), &mut rays);
+        }
+        if !self.spheres.blocks.is_empty() {
+            let mut rays = SphereRays::<K, ANY> {
+                kernel,
+                geometry: self,
+                open: Open::new(rays, nearest),
+            };
+            walk_many(kernel, &self.spheres.tree, self.spheres.bytes(), &mut rays);
+        }
+    }
+
+    /// Whether [`Geometry::search_many`] looks at anything.
+    pub(super) fn has_trees(&self) -> bool {
+        !(self.simple.few && self.simple.meshes.is_empty() && self.spheres.blocks.is_empty())
+    }
+
+    /// [`Geometry::search_many`] with the kernel of this processor.
+    pub(super) fn ask_many<const ANY: bool>(&self, rays: [&Vectors; 2], nearest: &mut [Nearest]) {
+        match self.choice {
+            Choice::Portable => self.search_many::<Portable, ANY>(Portable, rays, nearest),
+            #[cfg(target_arch = "x86_64")]
+            Choice::Avx2(kernel) => super::avx2::search_many::<ANY>(kernel, self, rays, nearest),
+        }
     }
 }
 
-impl Geometry {
-    /// What the meshes alone offer that is nearer than `nearest`.
+/// The rays that still ask something, with the best hit of each.
+struct Open<'a> {
+    rays: [&'a Vectors; 2],
+    nearest: std::slice::IterMut<'a, Nearest>,
+    at: usize,
+}
+
+impl<'a> Open<'a> {
     #[inline(always)]
-    pub(super) fn search_meshes<K: Kernel, const ANY: bool>(
-        &self,
-        kernel: K,
-        ray: &Ray,
-        nearest: Nearest,
-    ) -> Nearest {
-        if !ray.is_valid() {
-            return nearest;
+    fn new(rays: [&'a Vectors; 2], nearest: &'a mut [Nearest]) -> Self {
+        Self {
+            rays,
+            nearest: nearest.iter_mut(),
+            at: 0,
         }
-        let boxes = BoxRay::new(ray.origin, ray.direction, &self.top.bounds);
-        let mut visitor = Instances::<K, ANY> {
-            kernel,
-            geometry: self,
-            ray,
-            boxes: &boxes,
-            nearest,
-        };
-        for &(instance, tree) in &self.simple.meshes {
-            let found = visitor.mesh(tree, &self.placed[instance as usize], instance);
-            if ANY && found {
-                break;
+    }
+
+    /// The next that is valid, and of which any hit isn't enough.
+    #[inline(always)]
+    fn next<const ANY: bool>(&mut self) -> Option<(Ray, &'a mut Nearest)> {
+        loop {
+            let nearest = self.nearest.next()?;
+            let ray = Ray {
+                origin: self.rays[0].get(self.at),
+                direction: self.rays[1].get(self.at),
+                t_max: nearest.t,
+            };
+            self.at += 1;
+            if ray.is_valid() && !(ANY && nearest.found()) {
+                return Some((ray, nearest));
             }
         }
-        visitor.nearest
     }
+}
 
-    #[inline]
-    pub(super) fn nearest_of_meshes(&self, ray: &Ray, nearest: Nearest) -> Nearest {
-        match self.choice {
-            Choice::Portable => self.search_meshes::<Portable, false>(Portable, ray, nearest),
-            #[cfg(target_arch = "x86_64")]
-            Choice::Avx2(kernel) => super::avx2::search_meshes::<false>(kernel, self, ray, nearest),
-        }
-    }
+struct InstanceRays<'a, K: Kernel, const ANY: bool> {
+    kernel: K,
+    geometry: &'a Geometry,
+    open: Open<'a>,
+}
 
-    #[inline]
-    pub(super) fn occluded_by_meshes(&self, ray: &Ray) -> bool {
-        let nothing = Nearest::none(ray.t_max);
-        let found = match self.choice {
-            Choice::Portable => self.search_meshes::<Portable, true>(Portable, ray, nothing),
-            #[cfg(target_arch = "x86_64")]
-            Choice::Avx2(kernel) => super::avx2::search_meshes::<true>(kernel, self, ray, nothing),
+impl<'a, K: Kernel, const ANY: bool> Rays for InstanceRays<'a, K, ANY> {
+    type Visitor = Instances<'a, K, ANY>;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<(BoxRay, Self::Visitor)> {
+        let (ray, nearest) = self.open.next::<ANY>()?;
+        let boxes = BoxRay::new(ray.origin, ray.direction, &self.geometry.bounds);
+        let visitor = Instances {
+            kernel: self.kernel,
+            geometry: self.geometry,
+            ray,
+            boxes,
+            nearest,
         };
-        found.hit().is_some()
+        Some((boxes, visitor))
+    }
+}
+
+struct SphereRays<'a, K: Kernel, const ANY: bool> {
+    kernel: K,
+    geometry: &'a Geometry,
+    open: Open<'a>,
+}
+
+impl<'a, K: Kernel, const ANY: bool> Rays for SphereRays<'a, K, ANY> {
+    type Visitor = Spheres<'a, K, ANY>;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<(BoxRay, Self::Visitor)> {
+        let (ray, nearest) = self.open.next::<ANY>()?;
+        let Geometry {
+            spheres,
+            placed,
+            bounds,
+            ..
+        } = self.geometry;
+        Some(Spheres::new(
+            self.kernel,
+            spheres,
+            placed,
+            &ray,
+            bounds,
+            nearest,
+        ))
+    }
+}
+
+struct MeshRays<'a, K: Kernel, const ANY: bool> {
+    kernel: K,
+    geometry: &'a Geometry,
+    tree: &'a MeshTree,
+    instance: u32,
+    open: Open<'a>,
+}
+
+impl<'a, K: Kernel, const ANY: bool> Rays for MeshRays<'a, K, ANY> {
+    type Visitor = Triangles<'a, K, ANY>;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<(BoxRay, Self::Visitor)> {
+        loop {
+            let (ray, nearest) = self.open.next::<ANY>()?;
+            let placed = &self.geometry.placed[self.instance as usize];
+            let (ray, bounds) = if placed.identity {
+                (ray, &self.geometry.bounds)
+            } else {
+                (placed.ray_to_mesh(&ray), &self.tree.tree.bounds)
+            };
+            // Overflow or underflow on the way there: nothing can be seen.
+            if ray.is_valid() {
+                let boxes = BoxRay::new(ray.origin, ray.direction, bounds);
+                let (kernel, instance) = (self.kernel, self.instance);
+                let visitor = Triangles::new(kernel, self.tree, &ray, instance, nearest);
+                return Some((boxes, visitor));
+            }
+        }
     }
 }
 
 struct Instances<'a, K: Kernel, const ANY: bool> {
     kernel: K,
     geometry: &'a Geometry,
-    ray: &'a Ray,
-    boxes: &'a BoxRay,
-    nearest: Nearest,
+    ray: Ray,
+    boxes: BoxRay,
+    nearest: &'a mut Nearest,
 }
 
 impl<K: Kernel, const ANY: bool> Instances<'_, K, ANY> {
@@ -145,12 +277,12 @@ impl<K: Kernel, const ANY: bool> Instances<'_, K, ANY> {
     #[inline(always)]
     fn mesh(&mut self, tree: u32, placed: &Placed, instance: u32) -> bool {
         let tree = &self.geometry.trees[tree as usize];
-        let nearest = &mut self.nearest;
+        let nearest = &mut *self.nearest;
         if placed.identity {
-            let (kernel, boxes) = (self.kernel, self.boxes);
-            return kernel.search_mesh::<ANY>(tree, self.ray, boxes, instance, nearest);
+            let (kernel, boxes) = (self.kernel, &self.boxes);
+            return kernel.search_mesh::<ANY>(tree, &self.ray, boxes, instance, nearest);
         }
-        let ray = placed.ray_to_mesh(self.ray);
+        let ray = placed.ray_to_mesh(&self.ray);
         let boxes = BoxRay::new(ray.origin, ray.direction, &tree.tree.bounds);
         // Overflow or underflow on the way there: nothing can be seen.
         ray.is_valid()
@@ -176,12 +308,12 @@ impl<K: Kernel, const ANY: bool> Visitor for Instances<'_, K, ANY> {
             let found = match placed.kind {
                 Kind::Mesh(tree) => self.mesh(tree, placed, instance),
                 Kind::Sphere => {
-                    let (o, d) = placed.ray_to_object(self.ray);
+                    let (o, d) = placed.ray_to_object(&self.ray);
                     let met = cross_sphere(o, d);
                     met.found && self.nearest.offer(met.t as f32, instance, 0, 0.0, 0.0)
                 }
                 Kind::Rectangle | Kind::Disk => {
-                    let (o, d) = placed.ray_to_object(self.ray);
+                    let (o, d) = placed.ray_to_object(&self.ray);
                     let met = cross_flat(placed.kind == Kind::Disk, o, d);
                     let (x, y) = (met.x as f32, met.y as f32);
                     met.found && self.nearest.offer(met.t as f32, instance, 0, x, y)

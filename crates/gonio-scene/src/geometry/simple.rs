@@ -6,19 +6,19 @@
 use super::nearest::Nearest;
 use super::placed::{Kind, Placed};
 use super::shape::{Met, cross_flat, cross_sphere};
-use super::{Geometry, Hit, Ray};
+use super::{Geometry, Hit};
 use gonio_num::dispatch::{Kernel, dispatch};
 use gonio_num::{Affine3, Vec3, Vectors};
 
-/// The shapes of a scene that are no meshes, and the meshes, where both are few.
+/// What of a scene is searched without the tree over its instances.
 #[derive(Debug, Default)]
 pub(super) struct Simple {
-    /// Instances of spheres, rectangles and disks, in their order.
-    shapes: Vec<u32>,
-    /// Instances of meshes, with their trees.
+    /// Instances with which every ray is tested, no meshes, in their order.
+    pub(super) shapes: Vec<u32>,
+    /// Instances of meshes, with their trees, which every ray asks.
     pub(super) meshes: Vec<(u32, u32)>,
-    /// Whether they are few.
-    few: bool,
+    /// Whether those, and the spheres that have a tree of their own, are the whole scene. Otherwise there are none of them.
+    pub(super) few: bool,
 }
 
 /// The most work a ray may make, in units of a test of a plane. A walk through a tree takes the time of about forty.
@@ -27,31 +27,41 @@ const MOST_WORK: usize = 32;
 const SPHERE: usize = 2;
 /// The most meshes, each of which every ray asks.
 const MOST_MESHES: usize = 2;
+/// Spheres from which on they have a tree of their own, if they are too many to be tested one by one.
+const MANY_SPHERES: usize = 8;
 
 impl Simple {
-    pub(super) fn of(placed: &[Placed]) -> Self {
-        let mut simple = Self::default();
-        let mut work = 0;
+    /// What is simple, and the spheres that want a tree.
+    pub(super) fn of(placed: &[Placed]) -> (Self, Vec<u32>) {
+        let (mut flat, mut spheres, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
         for (i, placed) in placed.iter().enumerate() {
-            // A mesh without triangles has no box, and no tree to ask.
-            if placed.bounds.is_empty() {
-                continue;
-            }
+            let instance = i as u32;
             match placed.kind {
-                Kind::Mesh(tree) => simple.meshes.push((i as u32, tree)),
-                Kind::Sphere => work += SPHERE,
-                Kind::Rectangle | Kind::Disk => work += 1,
-            }
-            if !matches!(placed.kind, Kind::Mesh(_)) {
-                simple.shapes.push(i as u32);
-            }
-            if work > MOST_WORK || simple.meshes.len() > MOST_MESHES {
-                return Self::default();
+                // A mesh without triangles has no box, and no tree to ask.
+                _ if placed.bounds.is_empty() => {}
+                Kind::Mesh(tree) => meshes.push((instance, tree)),
+                Kind::Sphere => spheres.push(instance),
+                Kind::Rectangle | Kind::Disk => flat.push(instance),
             }
         }
-        // A mesh alone is best asked by itself.
-        simple.few = !simple.shapes.is_empty();
-        simple
+        let apart = flat.len() + SPHERE * spheres.len() > MOST_WORK && spheres.len() > MANY_SPHERES;
+        if !apart {
+            flat.append(&mut spheres);
+            flat.sort_unstable();
+        }
+        let is_sphere = |i: &&u32| placed[**i as usize].kind == Kind::Sphere;
+        let work = flat.len() + (SPHERE - 1) * flat.iter().filter(is_sphere).count();
+        let few = work <= MOST_WORK && meshes.len() <= MOST_MESHES;
+        let simple = if few {
+            Self {
+                shapes: flat,
+                meshes,
+                few,
+            }
+        } else {
+            Self::default()
+        };
+        (simple, spheres)
     }
 }
 
@@ -71,50 +81,17 @@ impl Geometry {
     pub fn intersect_many(&self, rays: [&Vectors; 2], hits: &mut Vec<Hit>) {
         let count = rays[0].len();
         hits.clear();
-        hits.resize(count, NOTHING);
-        if !self.simple.few {
-            for (i, hit) in hits.iter_mut().enumerate() {
-                let ray = Ray::new(rays[0].get(i), rays[1].get(i));
-                *hit = self.intersect(&ray).unwrap_or(NOTHING);
-            }
-            return;
+        let mut column = Columns::of(count);
+        if !self.simple.shapes.is_empty() {
+            dispatch(Nearby {
+                geometry: self,
+                rays: [rays[0].axes(), rays[1].axes()],
+                nearest: &mut column,
+            });
         }
-        let column = || vec![0.0; count];
-        let mut nearest = Columns {
-            t: vec![f32::INFINITY; count],
-            u: column(),
-            v: column(),
-            instance: vec![u32::MAX; count],
-        };
-        dispatch(Nearby {
-            geometry: self,
-            rays: [rays[0].axes(), rays[1].axes()],
-            nearest: &mut nearest,
-        });
-        for (i, hit) in hits.iter_mut().enumerate() {
-            *hit = Hit {
-                t: nearest.t[i],
-                instance: nearest.instance[i],
-                primitive: 0,
-                u: nearest.u[i],
-                v: nearest.v[i],
-            };
-        }
-        if self.simple.meshes.is_empty() {
-            return;
-        }
-        for (i, hit) in hits.iter_mut().enumerate() {
-            let ray = Ray::new(rays[0].get(i), rays[1].get(i));
-            let nearest = if hit.t < f32::INFINITY {
-                Nearest::of(hit)
-            } else {
-                Nearest::none(f32::INFINITY)
-            };
-            *hit = self
-                .nearest_of_meshes(&ray, nearest)
-                .hit()
-                .unwrap_or(NOTHING);
-        }
+        let mut nearest: Vec<Nearest> = (0..count).map(|i| column.get(i)).collect();
+        self.ask_many::<false>(rays, &mut nearest);
+        hits.extend(nearest.iter().map(|n| n.hit().unwrap_or(NOTHING)));
     }
 
     /// [`Geometry::occluded`] of many rays, the same to the bit.
@@ -128,28 +105,23 @@ impl Geometry {
         let count = rays[0].len();
         occluded.clear();
         occluded.resize(count, false);
-        let ray = |i: usize| Ray {
-            origin: rays[0].get(i),
-            direction: rays[1].get(i),
-            t_max: t_max[i],
-        };
-        if !self.simple.few {
-            for (i, occluded) in occluded.iter_mut().enumerate() {
-                *occluded = self.occluded(&ray(i));
-            }
+        if !self.simple.shapes.is_empty() {
+            dispatch(Anything {
+                geometry: self,
+                rays: [rays[0].axes(), rays[1].axes()],
+                t_max: &t_max[..count],
+                occluded,
+            });
+        }
+        if !self.has_trees() {
             return;
         }
-        dispatch(Anything {
-            geometry: self,
-            rays: [rays[0].axes(), rays[1].axes()],
-            t_max: &t_max[..count],
-            occluded,
-        });
-        if self.simple.meshes.is_empty() {
-            return;
-        }
-        for (i, occluded) in occluded.iter_mut().enumerate() {
-            *occluded = *occluded || self.occluded_by_meshes(&ray(i));
+        // What is known to be hidden asks nothing: its ray ends where it begins.
+        let end = |(t, hidden): (&f32, &bool)| Nearest::none(if *hidden { 0.0 } else { *t });
+        let mut nearest: Vec<Nearest> = t_max.iter().zip(&*occluded).map(end).collect();
+        self.ask_many::<true>(rays, &mut nearest);
+        for (occluded, nearest) in occluded.iter_mut().zip(&nearest) {
+            *occluded |= nearest.found();
         }
     }
 }
@@ -160,6 +132,24 @@ struct Columns {
     u: Vec<f32>,
     v: Vec<f32>,
     instance: Vec<u32>,
+}
+
+impl Columns {
+    fn of(count: usize) -> Self {
+        Self {
+            t: vec![f32::INFINITY; count],
+            u: vec![0.0; count],
+            v: vec![0.0; count],
+            instance: vec![u32::MAX; count],
+        }
+    }
+
+    #[inline(always)]
+    fn get(&self, i: usize) -> Nearest {
+        let mut nearest = Nearest::none(f32::INFINITY);
+        nearest.offer(self.t[i], self.instance[i], 0, self.u[i], self.v[i]);
+        nearest
+    }
 }
 
 // The loops below are over plain numbers, one ray after the other, with nothing in them but arithmetic and choices: a compiler turns them

@@ -35,6 +35,12 @@ impl Stack {
     }
 
     #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.len = 0;
+        self.spilled.clear();
+    }
+
+    #[inline(always)]
     pub(super) fn push(&mut self, entry: Entry) {
         if let Some(slot) = self.items.get_mut(self.len) {
             slot.write(entry);

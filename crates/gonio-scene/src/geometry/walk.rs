@@ -81,32 +81,46 @@ fn announce<K: Kernel, V: Visitor>(kernel: K, tree: &WideTree, visitor: &V, chil
     }
 }
 
-/// Walks the leaves that the ray may hit, roughly by distance.
-#[inline(always)]
-pub(crate) fn walk<K: Kernel, V: Visitor>(
-    kernel: K,
-    tree: &WideTree,
-    ray: &BoxRay,
-    visitor: &mut V,
-) {
-    if tree.nodes.is_empty() {
-        return;
+/// A walk that can be left after any step.
+pub(crate) struct Walk {
+    stack: Stack,
+    current: u32,
+}
+
+impl Walk {
+    /// At the root.
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            stack: Stack::new(),
+            current: 0,
+        }
     }
-    let mut stack = Stack::new();
-    let prepared = kernel.prepare_boxes(ray);
-    let mut current = 0u32;
-    loop {
-        if current & LEAF == 0 {
-            let node = &tree.nodes[current as usize];
+
+    /// Back to the root.
+    #[inline(always)]
+    fn restart(&mut self) {
+        self.stack.clear();
+        self.current = 0;
+    }
+
+    /// Visits one node or leaf, and announces the next; returns whether that was the last.
+    #[inline(always)]
+    fn step<K: Kernel, V: Visitor>(
+        &mut self,
+        kernel: K,
+        tree: &WideTree,
+        ray: &K::Boxes,
+        visitor: &mut V,
+    ) -> bool {
+        if self.current & LEAF == 0 {
+            let node = &tree.nodes[self.current as usize];
             // A vacant child's box lies inside out, so no ray meets it.
-            let (mut hits, near) = kernel.boxes(node, &prepared, visitor.t_max());
+            let (mut hits, near) = kernel.boxes(node, ray, visitor.t_max());
             if hits != 0 {
                 let i = hits.trailing_zeros() as usize % WIDTH;
                 hits &= hits - 1;
-                current = node.children[i];
-                if hits == 0 {
-                    continue;
-                }
+                let mut current = node.children[i];
                 announce(kernel, tree, visitor, current);
                 let mut nearest = near.0[i];
                 let mut others = 0;
@@ -122,26 +136,100 @@ pub(crate) fn walk<K: Kernel, V: Visitor>(
                         std::mem::swap(&mut entry.near, &mut nearest);
                         std::mem::swap(&mut entry.child, &mut current);
                     }
-                    stack.push(entry);
+                    self.stack.push(entry);
                     others += 1;
                 }
                 if !V::ANY && others > 1 {
-                    stack.sort_last(others);
+                    self.stack.sort_last(others);
                 }
-                continue;
+                self.current = current;
+                return false;
             }
         } else {
-            let (first, count) = leaf_items(current);
+            let (first, count) = leaf_items(self.current);
             if visitor.leaf(first, count) {
-                return;
+                return true;
             }
         }
         // The next entry that may still hold something nearer, or as near.
         loop {
-            let Some(entry) = stack.pop() else { return };
+            let Some(entry) = self.stack.pop() else {
+                return true;
+            };
             if V::ANY || entry.near <= visitor.t_max() {
-                current = entry.child;
-                break;
+                self.current = entry.child;
+                return false;
+            }
+        }
+    }
+}
+
+/// Walks the leaves that the ray may hit, roughly by distance.
+#[inline(always)]
+pub(crate) fn walk<K: Kernel, V: Visitor>(
+    kernel: K,
+    tree: &WideTree,
+    ray: &BoxRay,
+    visitor: &mut V,
+) {
+    if tree.nodes.is_empty() {
+        return;
+    }
+    let prepared = kernel.prepare_boxes(ray);
+    let mut walk = Walk::new();
+    while !walk.step(kernel, tree, &prepared, visitor) {}
+}
+
+/// Where walks of many rays come from.
+pub(crate) trait Rays {
+    /// What each does at the leaves.
+    type Visitor: Visitor;
+    /// The next, if any is left.
+    fn next(&mut self) -> Option<(BoxRay, Self::Visitor)>;
+}
+
+/// Trees of fewer bytes stay in the cache, and their rays are walked one after the other.
+const LARGE: usize = 1 << 20;
+
+/// Walks at a time: while one waits for the memory that it announced, the others go on.
+const STREAMS: usize = 8;
+
+/// [`walk`] for many rays; in a tree of many bytes, those of what its owner stores included, a step of one after a step of another.
+#[inline(always)]
+pub(crate) fn walk_many<K: Kernel, R: Rays>(
+    kernel: K,
+    tree: &WideTree,
+    bytes: usize,
+    rays: &mut R,
+) {
+    if tree.nodes.is_empty() {
+        return;
+    }
+    if bytes < LARGE {
+        while let Some((ray, mut visitor)) = rays.next() {
+            walk(kernel, tree, &ray, &mut visitor);
+        }
+        return;
+    }
+    let mut walks = Vec::with_capacity(STREAMS);
+    while walks.len() < STREAMS
+        && let Some((ray, visitor)) = rays.next()
+    {
+        walks.push((Walk::new(), kernel.prepare_boxes(&ray), visitor));
+    }
+    while !walks.is_empty() {
+        let mut i = 0;
+        while let Some((walk, ray, visitor)) = walks.get_mut(i) {
+            if !walk.step(kernel, tree, ray, visitor) {
+                i += 1;
+            } else if let Some((next, of_next)) = rays.next() {
+                // Its stack is empty, or holds what no longer counts.
+                walk.restart();
+                *ray = kernel.prepare_boxes(&next);
+                *visitor = of_next;
+                i += 1;
+            } else {
+                walks.swap_remove(i);
             }
         }
     }

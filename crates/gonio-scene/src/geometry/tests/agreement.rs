@@ -32,7 +32,7 @@ fn one_by_one(mesh: &TriangleMesh, ray: &Ray) -> Option<Hit> {
 }
 
 /// Rays of all kinds: any, along an axis, within a coordinate plane, starting on a vertex's coordinates, bounded.
-fn ray(random: &mut Random, mesh: &TriangleMesh) -> Ray {
+pub(super) fn ray(random: &mut Random, mesh: &TriangleMesh) -> Ray {
     let mut origin = (random.point() * 1.5).to_array();
     let mut direction = random.direction().to_array();
     let vertex = mesh.positions[random.below(mesh.positions.len())].to_array();
@@ -61,7 +61,7 @@ fn ray(random: &mut Random, mesh: &TriangleMesh) -> Ray {
     ray
 }
 
-fn bits(h: Option<Hit>) -> Option<[u32; 5]> {
+pub(super) fn bits(h: Option<Hit>) -> Option<[u32; 5]> {
     h.map(|h| {
         [
             h.t.to_bits(),

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod leaving;
+mod many;
 mod placing;
 mod sampling;
 mod scenes;
