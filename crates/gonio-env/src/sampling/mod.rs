@@ -19,7 +19,7 @@ use tree::Tree;
 ///
 /// | | time | stratified points | memory a texel |
 /// |---|---|---|---|
-/// | `Inversion` | a search in two rows | stay stratified, rows and columns | 8 bytes |
+/// | `Inversion` | a search in two rows | stay stratified, rows and columns | 13 bytes |
 /// | `Hierarchical` | one step a doubling of the picture | stay near each other | 9 bytes |
 /// | `Alias` | fixed | are torn apart | 12 bytes |
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -10,51 +10,67 @@ use super::nodes::{Band, Nodes, U_MAX, U_MIN, sample_linear};
 use gonio_num::lanes::Lanes;
 use gonio_num::{DoubleLanes, Real, Vec3};
 
-/// Intervals of probability that a node row's guide tells apart.
-const GUIDES: usize = 64;
-
 /// Running integrals over the node rows and over the bands.
 #[derive(Debug)]
 pub(super) struct Rows {
-    /// For each node row, `width + 1` running integrals in units of a cell, from node 0 around the circle.
-    running: Vec<f32>,
-    /// For each node row and each k of 0..=[`GUIDES`], the largest index whose running integral is at most k / [`GUIDES`] of the
-    /// row's: where a search may begin and end (Chen and Asau 1974, "On Generating Random Variates from an Empirical
-    /// Distribution").
-    guide: Vec<u32>,
+    /// For each node row, `width + 1` pairs, from node 0 around the circle: the running integral in units of a cell, and the value.
+    cells: Vec<[f32; 2]>,
+    /// For each node row the running integral at its end.
+    whole: Vec<f32>,
+    /// For each band and each k below `guides` the first and the last column where the running integral of a row between its two
+    /// node rows may reach a fraction from k / `guides` to (k + 1) / `guides` of the row's: where a search begins and ends (Chen and
+    /// Asau 1974, "On Generating Random Variates from an Empirical Distribution").
+    guide: Vec<[u32; 2]>,
+    guides: usize,
     /// For each node row the mean over the circle.
     row_mean: Vec<f64>,
     /// Running probability of the bands: `height + 2`, from 0 to 1.
     bands: Vec<f64>,
-    /// For each k of 0..=[`GUIDES`] the band where it reaches k / [`GUIDES`].
+    /// For each k of 0..=`band_guides` the band where it reaches k / `band_guides`.
     band_guide: Vec<u32>,
+    band_guides: usize,
 }
+
+/// Columns that a search chooses among, on average: what a line of the cache holds.
+const COLUMNS_A_GUIDE: usize = 8;
 
 impl Rows {
     pub fn new(nodes: &Nodes) -> Self {
         let (width, height) = (nodes.width, nodes.height);
-        let mut running = Vec::with_capacity((width + 1) * height);
-        let mut row_mean = Vec::with_capacity(height);
+        let mut cells = Vec::with_capacity((width + 1) * height);
+        let (mut row_mean, mut whole) = (Vec::new(), Vec::new());
         for row in nodes.values.chunks_exact(width) {
             let mut sum = 0.0;
-            running.push(0.0);
-            for i in 0..width {
-                let next = row[if i + 1 == width { 0 } else { i + 1 }];
-                sum += 0.5 * (f64::from(row[i]) + f64::from(next));
-                running.push(sum as f32);
+            for i in 0..=width {
+                let value = row[i % width];
+                cells.push([sum as f32, value]);
+                let next = row[(i + 1) % width];
+                if i < width {
+                    sum += 0.5 * (f64::from(value) + f64::from(next));
+                }
             }
+            whole.push(sum as f32);
             row_mean.push(sum / width as f64);
         }
-        let mut guide = Vec::with_capacity((GUIDES + 1) * height);
-        for row in running.chunks_exact(width + 1) {
+        let guides = width.div_ceil(COLUMNS_A_GUIDE);
+        // For each node row and each k, the largest column whose running integral is at most k / guides of the row's.
+        let mut reached = Vec::with_capacity((guides + 1) * height);
+        for (row, whole) in cells.chunks_exact(width + 1).zip(&whole) {
             let mut i = 0;
-            for k in 0..=GUIDES {
-                let bound = k as f64 / GUIDES as f64 * f64::from(row[width]);
-                while i + 1 < width && f64::from(row[i + 1]) <= bound {
+            for k in 0..=guides {
+                let bound = k as f64 / guides as f64 * f64::from(*whole);
+                while i + 1 < width && f64::from(row[i + 1][0]) <= bound {
                     i += 1;
                 }
-                guide.push(i as u32);
+                reached.push(i as u32);
             }
+        }
+        let mut guide = Vec::with_capacity(guides * (height + 1));
+        for band in 0..=height {
+            let (above, below) = nodes.rows_of(band);
+            let of = |row: usize| &reached[row * (guides + 1)..(row + 1) * (guides + 1)];
+            let (a, b) = (of(above), of(below));
+            guide.extend((0..guides).map(|k| [a[k].min(b[k]), a[k + 1].max(b[k + 1])]));
         }
         let mut bands = vec![0.0];
         let mut sum = 0.0;
@@ -66,14 +82,18 @@ impl Rows {
         for b in &mut bands {
             *b /= sum;
         }
-        let band_guide = (0..=GUIDES).map(|k| {
-            let v = k as f64 / GUIDES as f64;
+        let band_guides = height.clamp(64, 4096);
+        let band_guide = (0..=band_guides).map(|k| {
+            let v = k as f64 / band_guides as f64;
             (bands.partition_point(|&b| b <= v) - 1).min(height) as u32
         });
         Self {
             band_guide: band_guide.collect(),
-            running,
+            band_guides,
+            cells,
+            whole,
             guide,
+            guides,
             row_mean,
             bands,
         }
@@ -93,7 +113,7 @@ impl Rows {
         let (least, most) = (DoubleLanes::lit(U_MIN), DoubleLanes::lit(U_MAX));
         let v = u[1].to_double().clamp(least, most);
         let zero = DoubleLanes([0.0; L]);
-        let mut rows = [[0_usize; 2]; L];
+        let chosen = self.bands_of(v);
         let (mut start, mut end, mut means) = (zero, zero, [zero; 2]);
         let mut band = Band {
             low: zero,
@@ -104,12 +124,11 @@ impl Rows {
             narrow: nodes.is_narrow(),
         };
         for lane in 0..L {
-            let chosen = self.band_of(v.0[lane]);
-            let (above, below) = nodes.rows_of(chosen);
-            let one = nodes.band(chosen);
-            rows[lane] = [above, below];
-            start.0[lane] = self.bands[chosen];
-            end.0[lane] = self.bands[chosen + 1];
+            let k = chosen[lane];
+            let (above, below) = nodes.rows_of(k);
+            let one = nodes.band(k);
+            start.0[lane] = self.bands[k];
+            end.0[lane] = self.bands[k + 1];
             means[0].0[lane] = self.row_mean[above];
             means[1].0[lane] = self.row_mean[below];
             band.low.0[lane] = one.low;
@@ -123,23 +142,26 @@ impl Rows {
         }
         let inside = (v - start) / (end - start);
         let (t, sin_cos) = band.invert(means[0], means[1], inside);
-        let (column, s) = self.sample_turn(nodes, &rows, t, u[0].to_double().clamp(least, most));
+        let (column, s) = self.sample_turn(nodes, &chosen, t, u[0].to_double().clamp(least, most));
         nodes.directions(column, s, sin_cos)
     }
 
-    /// The band where the running probability reaches `v`.
+    /// The band where the running probability reaches `v`, in every lane.
     #[inline(always)]
-    fn band_of(&self, v: f64) -> usize {
-        let k = (v * GUIDES as f64) as usize;
-        let (mut low, high) = (
-            self.band_guide[k] as usize,
-            self.band_guide[k + 1] as usize + 1,
-        );
-        let mut length = high - low;
-        while length > 1 {
-            let half = length / 2;
-            low += if self.bands[low + half] <= v { half } else { 0 };
-            length -= half;
+    fn bands_of<const L: usize>(&self, v: DoubleLanes<L>) -> [usize; L] {
+        let (mut low, mut length) = ([0; L], [0; L]);
+        for lane in 0..L {
+            let k = (v.0[lane] * self.band_guides as f64) as usize;
+            low[lane] = self.band_guide[k] as usize;
+            length[lane] = self.band_guide[k + 1] as usize + 1 - low[lane];
+        }
+        while longest(&length) > 1 {
+            for lane in 0..L {
+                let half = length[lane] / 2;
+                let reached = self.bands[low[lane] + half] <= v.0[lane];
+                low[lane] += if reached { half } else { 0 };
+                length[lane] -= half;
+            }
         }
         low
     }
@@ -149,33 +171,36 @@ impl Rows {
     fn sample_turn<const L: usize>(
         &self,
         nodes: &Nodes,
-        rows: &[[usize; 2]; L],
+        bands: &[usize; L],
         t: DoubleLanes<L>,
         u: DoubleLanes<L>,
     ) -> (DoubleLanes<L>, DoubleLanes<L>) {
         let zero = DoubleLanes([0.0; L]);
-        let mut column = zero;
-        // Of the two rows: the running integrals at both ends of the cell that was found, the values there, and the whole.
-        let mut ends = [[zero; 2]; 2];
-        let mut values = [[zero; 2]; 2];
         let mut wholes = [zero; 2];
-        let w = nodes.width;
+        let mut rows = [[0; L]; 2];
         for lane in 0..L {
-            let low = self.search_turn(w, rows[lane], t.0[lane], u.0[lane]);
-            let next = if low + 1 == w { 0 } else { low + 1 };
-            column.0[lane] = low as f64;
-            for k in 0..2 {
-                let row = rows[lane][k];
-                let running = &self.running[row * (w + 1)..(row + 1) * (w + 1)];
-                let value = &nodes.values[row * w..(row + 1) * w];
-                ends[k][0].0[lane] = f64::from(running[low]);
-                ends[k][1].0[lane] = f64::from(running[low + 1]);
-                values[k][0].0[lane] = f64::from(value[low]);
-                values[k][1].0[lane] = f64::from(value[next]);
-                wholes[k].0[lane] = f64::from(running[w]);
+            let (above, below) = nodes.rows_of(bands[lane]);
+            for (k, row) in [above, below].into_iter().enumerate() {
+                rows[k][lane] = row * (nodes.width + 1);
+                wholes[k].0[lane] = f64::from(self.whole[row]);
             }
         }
         let x = u * t.lerp(wholes[0], wholes[1]);
+        let low = self.search_turn(nodes.width, bands, &rows, t, u, x);
+        let mut column = zero;
+        // Of the two rows: the running integrals at both ends of the cell that was found, and the values there.
+        let mut ends = [[zero; 2]; 2];
+        let mut values = [[zero; 2]; 2];
+        for lane in 0..L {
+            column.0[lane] = low[lane] as f64;
+            for k in 0..2 {
+                let cells = &self.cells[rows[k][lane] + low[lane]..][..2];
+                for (side, [running, value]) in cells.iter().enumerate() {
+                    ends[k][side].0[lane] = f64::from(*running);
+                    values[k][side].0[lane] = f64::from(*value);
+                }
+            }
+        }
         let start = t.lerp(ends[0][0], ends[1][0]);
         let end = t.lerp(ends[0][1], ends[1][1]);
         let left = t.lerp(values[0][0], values[1][0]);
@@ -187,34 +212,57 @@ impl Rows {
         (column, sample_linear(left, right, inside))
     }
 
-    /// The largest column whose running integral, between two node rows, is at most the fraction `u` of the whole.
+    /// The largest column whose running integral, between two node rows that begin at `rows`, is at most `x`, which is the fraction
+    /// `u` of the whole; in every lane.
     #[inline(always)]
-    fn search_turn(&self, w: usize, [above, below]: [usize; 2], t: f64, u: f64) -> usize {
-        let a = &self.running[above * (w + 1)..(above + 1) * (w + 1)];
-        let b = &self.running[below * (w + 1)..(below + 1) * (w + 1)];
-        let at = |i: usize| (1.0 - t) * f64::from(a[i]) + t * f64::from(b[i]);
-        let x = u * at(w);
-        // It lies between those of the two rows.
-        let k = (u * GUIDES as f64) as usize;
-        let guides = |row: usize| {
-            let at = row * (GUIDES + 1) + k;
-            (self.guide[at] as usize, self.guide[at + 1] as usize)
+    fn search_turn<const L: usize>(
+        &self,
+        w: usize,
+        bands: &[usize; L],
+        rows: &[[usize; L]; 2],
+        t: DoubleLanes<L>,
+        u: DoubleLanes<L>,
+        x: DoubleLanes<L>,
+    ) -> [usize; L] {
+        let at = |lane: usize, i: usize| {
+            let [a, b] =
+                [rows[0][lane], rows[1][lane]].map(|row| f64::from(self.cells[row + i][0]));
+            (1.0 - t.0[lane]) * a + t.0[lane] * b
         };
-        let ((low_a, high_a), (low_b, high_b)) = (guides(above), guides(below));
-        let (mut low, mut length) = (low_a.min(low_b), high_a.max(high_b) + 1);
-        length -= low;
-        // But for roundings.
-        if at(low) > x || (low + length < w && at(low + length) <= x) {
-            (low, length) = (0, w);
+        let (mut low, mut length) = ([0; L], [0; L]);
+        for lane in 0..L {
+            let k = (u.0[lane] * self.guides as f64) as usize;
+            let [first, last] = self.guide[bands[lane] * self.guides + k];
+            low[lane] = first as usize;
+            length[lane] = (last + 1 - first) as usize;
         }
-        // Halving without branches: no processor predicts them.
-        while length > 1 {
-            let half = length / 2;
-            low += if at(low + half) <= x { half } else { 0 };
-            length -= half;
+        // Halving without branches, which no processor predicts, all lanes in step: while one waits for memory, so do the others.
+        while longest(&length) > 1 {
+            for lane in 0..L {
+                let half = length[lane] / 2;
+                let reached = at(lane, low[lane] + half) <= x.0[lane];
+                low[lane] += if reached { half } else { 0 };
+                length[lane] -= half;
+            }
+        }
+        for lane in 0..L {
+            // The guides are right but for roundings.
+            let (i, x) = (low[lane], x.0[lane]);
+            if at(lane, i) > x || (i + 1 < w && at(lane, i + 1) <= x) {
+                low[lane] = (1..w).rfind(|&i| at(lane, i) <= x).unwrap_or(0);
+            }
         }
         low
     }
+}
+
+#[inline(always)]
+fn longest<const L: usize>(lengths: &[usize; L]) -> usize {
+    let mut most = 0;
+    for length in lengths {
+        most = most.max(*length);
+    }
+    most
 }
 
 #[cfg(test)]
@@ -236,13 +284,18 @@ mod tests {
             let rows = Rows::new(&nodes);
             let mut misled = Rows::new(&nodes);
             // Guides that lead astray are noticed, and all cells are searched.
-            misled.guide.fill(0);
+            misled.guide.fill([0; 2]);
             for row in 1..h {
                 for (t, u) in (0..997).map(|i| (f64::from(i % 13) / 12.0, f64::from(i) / 997.0)) {
                     let u = u.clamp(U_MIN, U_MAX);
-                    let guided = rows.search_turn(w, [row - 1, row], t, u);
-                    let plain = misled.search_turn(w, [row - 1, row], t, u);
-                    assert_eq!(guided, plain, "{w} {row} {t} {u}");
+                    let whole = [row - 1, row].map(|r| f64::from(rows.whole[r]));
+                    let x = u * ((1.0 - t) * whole[0] + t * whole[1]);
+                    let starts = [[(row - 1) * (w + 1)], [row * (w + 1)]];
+                    let found = |rows: &Rows| {
+                        let [t, u, x] = [t, u, x].map(|x| DoubleLanes([x]));
+                        rows.search_turn(w, &[row], &starts, t, u, x)
+                    };
+                    assert_eq!(found(&rows), found(&misled), "{w} {row} {t} {u}");
                 }
             }
         }
