@@ -213,25 +213,27 @@ impl Map {
     #[inline(always)]
     pub fn radiances<const L: usize>(&self, uv: [Lanes<L>; 2]) -> [Lanes<L>; 3] {
         let zero = Lanes([0.0; L]);
-        let mut texels = [[zero; 3]; 4];
+        let mut corners = [[0; L]; 4];
         let (mut fu, mut fv) = (zero, zero);
         for lane in 0..L {
             let b = self.cell([uv[0].0[lane], uv[1].0[lane]]);
             let (top, bottom) = (b.top * self.width, b.bottom * self.width);
-            let corners = [
-                top + b.left,
-                top + b.right,
-                bottom + b.left,
-                bottom + b.right,
-            ];
-            for k in 0..4 {
-                let texel = &self.texels[corners[k]];
+            corners[0][lane] = top + b.left;
+            corners[1][lane] = top + b.right;
+            corners[2][lane] = bottom + b.left;
+            corners[3][lane] = bottom + b.right;
+            fu.0[lane] = b.fu;
+            fv.0[lane] = b.fv;
+        }
+        let mut texels = [[zero; 3]; 4];
+        // Corner by corner: while one lane waits for memory, so do the others.
+        for k in [0, 2, 1, 3] {
+            for lane in 0..L {
+                let texel = &self.texels[corners[k][lane]];
                 for c in 0..3 {
                     texels[k][c].0[lane] = texel[c];
                 }
             }
-            fu.0[lane] = b.fu;
-            fv.0[lane] = b.fv;
         }
         let (gu, gv) = (Lanes::one() - fu, Lanes::one() - fv);
         let mut rgb = [zero; 3];
