@@ -30,17 +30,17 @@ pub(crate) fn add<const K: usize>(bins: &mut [u64; K], top: &mut u8, value: f64)
         return;
     }
     let mantissa = (bits & ((1 << 52) - 1)) | 1 << 52;
-    // The place of the leading bit, which is bit 52 of the mantissa.
-    let leading = exponent + 52;
-    let place = leading / 32;
-    // Three digits of which the first has the leading bit: that is then bit 64 + leading mod 32.
-    let digits = u128::from(mantissa) << (12 + leading % 32);
-    // At most (2046 + 52) / 32 = 65.
-    raise(bins, top, place as u8);
-    let below = u32::from(*top) - place;
-    let shifted = if below < 3 { digits >> (32 * below) } else { 0 };
+    // The place of the leading bit, which is bit 52 of the mantissa: at most (2046 + 52) / 32 = 65.
+    raise(bins, top, ((exponent + 52) / 32) as u8);
     for (i, bin) in bins.iter_mut().enumerate() {
-        *bin += u64::from((shifted >> (64 - 32 * i)) as u32);
+        // By how much the number's unit is above that of the digit: below 44, as the number has no digit above the top.
+        let above = exponent as i32 - 32 * (i32::from(*top) - i as i32);
+        let digit = if above < 0 {
+            mantissa >> above.unsigned_abs().min(63)
+        } else {
+            mantissa << above
+        };
+        *bin += digit & u64::from(u32::MAX);
     }
 }
 

@@ -51,11 +51,11 @@ const FIXED: f64 = (1 << 24) as f64;
 /// Units that one sample may add: 2³² samples fit an `i64`. It is an albedo of 128.
 const MOST_FIXED: f64 = (1_i64 << 31) as f64;
 
+#[inline(always)]
 fn fixed(x: f32) -> i64 {
-    // NaN becomes 0.
-    (f64::from(x) * FIXED)
-        .round()
-        .clamp(-MOST_FIXED, MOST_FIXED) as i64
+    // NaN becomes 0. The nearest integer: the sum is exact, as a number of 24 bits that is no integer is below 2²⁴; `f64::round` is a call.
+    let x = (f64::from(x) * FIXED).clamp(-MOST_FIXED, MOST_FIXED);
+    (x + 0.5_f64.copysign(x)) as i64
 }
 
 impl PixelSums {

@@ -27,6 +27,19 @@ impl Nearest {
         }
     }
 
+    /// The best one so far is `hit`; none if that is infinitely far away.
+    #[inline(always)]
+    pub(crate) fn of(hit: &Hit) -> Self {
+        Self {
+            t: hit.t,
+            instance: hit.instance,
+            primitive: hit.primitive,
+            u: hit.u,
+            v: hit.v,
+            found: hit.t < f32::INFINITY,
+        }
+    }
+
     /// Whether there is any.
     #[inline(always)]
     pub(crate) fn found(&self) -> bool {

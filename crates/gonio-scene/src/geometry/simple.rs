@@ -79,19 +79,23 @@ impl Geometry {
     ///
     /// - `rays`: origins and directions
     pub fn intersect_many(&self, rays: [&Vectors; 2], hits: &mut Vec<Hit>) {
-        let count = rays[0].len();
         hits.clear();
-        let mut column = Columns::of(count);
+        hits.resize(rays[0].len(), NOTHING);
         if !self.simple.shapes.is_empty() {
             dispatch(Nearby {
                 geometry: self,
-                rays: [rays[0].axes(), rays[1].axes()],
-                nearest: &mut column,
+                rays: rays.map(Vectors::axes),
+                hits,
             });
         }
-        let mut nearest: Vec<Nearest> = (0..count).map(|i| column.get(i)).collect();
+        if !self.has_trees() {
+            return;
+        }
+        let mut nearest: Vec<Nearest> = hits.iter().map(Nearest::of).collect();
         self.ask_many::<false>(rays, &mut nearest);
-        hits.extend(nearest.iter().map(|n| n.hit().unwrap_or(NOTHING)));
+        for (hit, nearest) in hits.iter_mut().zip(&nearest) {
+            *hit = nearest.hit().unwrap_or(NOTHING);
+        }
     }
 
     /// [`Geometry::occluded`] of many rays, the same to the bit.
@@ -108,7 +112,7 @@ impl Geometry {
         if !self.simple.shapes.is_empty() {
             dispatch(Anything {
                 geometry: self,
-                rays: [rays[0].axes(), rays[1].axes()],
+                rays: rays.map(Vectors::axes),
                 t_max: &t_max[..count],
                 occluded,
             });
@@ -126,52 +130,44 @@ impl Geometry {
     }
 }
 
-/// The nearest hits, as a structure of arrays.
-struct Columns {
-    t: Vec<f32>,
-    u: Vec<f32>,
-    v: Vec<f32>,
-    instance: Vec<u32>,
-}
+/// Rays that are tested with one shape after the other while they stay in the first cache.
+const BLOCK: usize = 64;
 
-impl Columns {
-    fn of(count: usize) -> Self {
-        Self {
-            t: vec![f32::INFINITY; count],
-            u: vec![0.0; count],
-            v: vec![0.0; count],
-            instance: vec![u32::MAX; count],
-        }
-    }
-
-    #[inline(always)]
-    fn get(&self, i: usize) -> Nearest {
-        let mut nearest = Nearest::none(f32::INFINITY);
-        nearest.offer(self.t[i], self.instance[i], 0, self.u[i], self.v[i]);
-        nearest
-    }
+/// Some rays, in double precision, as a structure of arrays. Behind the last they have no direction, and meet nothing.
+struct Block {
+    origin: [[f64; BLOCK]; 3],
+    direction: [[f64; BLOCK]; 3],
 }
 
 // The loops below are over plain numbers, one ray after the other, with nothing in them but arithmetic and choices: a compiler turns them
 // into vector instructions of any width by itself, better than it does with masks and numbers of two widths in lanes.
 
-/// A ray in the coordinates of a shape.
-#[inline(always)]
-fn to_object(m: &Affine3<f64>, rays: &[[&[f32]; 3]; 2], i: usize) -> [Vec3<f64>; 2] {
-    let [[ox, oy, oz], [dx, dy, dz]] = rays;
-    let o = Vec3::new(ox[i], oy[i], oz[i]).to_f64();
-    let d = Vec3::new(dx[i], dy[i], dz[i]).to_f64();
-    [m.transform_point(o), m.transform_vector(d)]
-}
+impl Block {
+    #[inline(always)]
+    fn of(rays: &[[&[f32]; 3]; 2], at: usize, count: usize) -> Self {
+        let mut columns = [[[0.0; BLOCK]; 3]; 2];
+        for k in 0..2 {
+            for axis in 0..3 {
+                let source = &rays[k][axis][at..at + count];
+                for i in 0..count {
+                    columns[k][axis][i] = f64::from(source[i]);
+                }
+            }
+        }
+        let [origin, direction] = columns;
+        Self { origin, direction }
+    }
 
-/// The rays, each axis as a slice of `count`, which a compiler then knows.
-#[inline(always)]
-fn cut(rays: [[&[f32]; 3]; 2], count: usize) -> [[&[f32]; 3]; 2] {
-    let [[ox, oy, oz], [dx, dy, dz]] = rays;
-    [
-        [&ox[..count], &oy[..count], &oz[..count]],
-        [&dx[..count], &dy[..count], &dz[..count]],
-    ]
+    /// Ray `i` in the coordinates of a shape.
+    #[inline(always)]
+    fn in_object(&self, m: &Affine3<f64>, i: usize) -> [Vec3<f64>; 2] {
+        let [ox, oy, oz] = &self.origin;
+        let [dx, dy, dz] = &self.direction;
+        [
+            m.transform_point(Vec3::new(ox[i], oy[i], oz[i])),
+            m.transform_vector(Vec3::new(dx[i], dy[i], dz[i])),
+        ]
+    }
 }
 
 /// A kind of shape, known when the loop over the rays is compiled.
@@ -207,29 +203,30 @@ impl Crossed for Disk {
 struct Nearby<'a> {
     geometry: &'a Geometry,
     rays: [[&'a [f32]; 3]; 2],
-    nearest: &'a mut Columns,
+    hits: &'a mut [Hit],
 }
 
-impl Nearby<'_> {
+/// The nearest hits of a block.
+struct Columns {
+    t: [f32; BLOCK],
+    u: [f32; BLOCK],
+    v: [f32; BLOCK],
+    instance: [u32; BLOCK],
+}
+
+impl Columns {
     /// Of shapes at the same t the first one stays.
     #[inline(always)]
-    fn test<S: Crossed>(&mut self, placed: &Placed, instance: u32) {
-        let count = self.nearest.t.len();
+    fn test<S: Crossed>(&mut self, block: &Block, placed: &Placed, instance: u32) {
         let m = placed.to_object;
-        let rays = cut(self.rays, count);
-        let (t, u) = (&mut self.nearest.t[..count], &mut self.nearest.u[..count]);
-        let (v, which) = (
-            &mut self.nearest.v[..count],
-            &mut self.nearest.instance[..count],
-        );
-        for i in 0..count {
-            let [o, d] = to_object(&m, &rays, i);
+        for i in 0..BLOCK {
+            let [o, d] = block.in_object(&m, i);
             let met = S::cross(o, d);
-            let nearer = met.found & ((met.t as f32) < t[i]);
-            t[i] = if nearer { met.t as f32 } else { t[i] };
-            u[i] = if nearer { met.x as f32 } else { u[i] };
-            v[i] = if nearer { met.y as f32 } else { v[i] };
-            which[i] = if nearer { instance } else { which[i] };
+            let nearer = met.found & ((met.t as f32) < self.t[i]);
+            self.t[i] = if nearer { met.t as f32 } else { self.t[i] };
+            self.u[i] = if nearer { met.x as f32 } else { self.u[i] };
+            self.v[i] = if nearer { met.y as f32 } else { self.v[i] };
+            self.instance[i] = if nearer { instance } else { self.instance[i] };
         }
     }
 }
@@ -237,15 +234,33 @@ impl Nearby<'_> {
 impl Kernel for Nearby<'_> {
     type Output = ();
     #[inline(always)]
-    fn run<const L: usize>(mut self) {
+    fn run<const L: usize>(self) {
         let geometry = self.geometry;
-        for &instance in &geometry.simple.shapes {
-            let placed = &geometry.placed[instance as usize];
-            match placed.kind {
-                Kind::Rectangle => self.test::<Rectangle>(placed, instance),
-                Kind::Disk => self.test::<Disk>(placed, instance),
-                Kind::Sphere => self.test::<Sphere>(placed, instance),
-                Kind::Mesh(_) => {}
+        for (k, hits) in self.hits.chunks_mut(BLOCK).enumerate() {
+            let block = Block::of(&self.rays, k * BLOCK, hits.len());
+            let mut nearest = Columns {
+                t: [NOTHING.t; BLOCK],
+                u: [NOTHING.u; BLOCK],
+                v: [NOTHING.v; BLOCK],
+                instance: [NOTHING.instance; BLOCK],
+            };
+            for &instance in &geometry.simple.shapes {
+                let placed = &geometry.placed[instance as usize];
+                match placed.kind {
+                    Kind::Rectangle => nearest.test::<Rectangle>(&block, placed, instance),
+                    Kind::Disk => nearest.test::<Disk>(&block, placed, instance),
+                    Kind::Sphere => nearest.test::<Sphere>(&block, placed, instance),
+                    Kind::Mesh(_) => {}
+                }
+            }
+            for (i, hit) in hits.iter_mut().enumerate() {
+                *hit = Hit {
+                    t: nearest.t[i],
+                    instance: nearest.instance[i],
+                    primitive: 0,
+                    u: nearest.u[i],
+                    v: nearest.v[i],
+                };
             }
         }
     }
@@ -258,34 +273,46 @@ struct Anything<'a> {
     occluded: &'a mut [bool],
 }
 
-impl Anything<'_> {
-    #[inline(always)]
-    fn test<S: Crossed>(&mut self, placed: &Placed) {
-        let count = self.occluded.len();
-        let m = placed.to_object;
-        let rays = cut(self.rays, count);
-        let end = &self.t_max[..count];
-        let occluded = &mut self.occluded[..count];
-        for i in 0..count {
-            let [o, d] = to_object(&m, &rays, i);
-            let met = S::cross(o, d);
-            occluded[i] |= met.found & ((met.t as f32) < end[i]);
-        }
+/// Whether the rays of a block, which end at `t_max`, meet a shape; as numbers of the width of t, which suits vector instructions.
+#[inline(always)]
+fn test_any<S: Crossed>(
+    block: &Block,
+    placed: &Placed,
+    t_max: &[f32; BLOCK],
+    met: &mut [u32; BLOCK],
+) {
+    let m = placed.to_object;
+    for i in 0..BLOCK {
+        let [o, d] = block.in_object(&m, i);
+        let crossed = S::cross(o, d);
+        met[i] |= u32::from(crossed.found & ((crossed.t as f32) < t_max[i]));
     }
 }
 
 impl Kernel for Anything<'_> {
     type Output = ();
     #[inline(always)]
-    fn run<const L: usize>(mut self) {
+    fn run<const L: usize>(self) {
         let geometry = self.geometry;
-        for &instance in &geometry.simple.shapes {
-            let placed = &geometry.placed[instance as usize];
-            match placed.kind {
-                Kind::Rectangle => self.test::<Rectangle>(placed),
-                Kind::Disk => self.test::<Disk>(placed),
-                Kind::Sphere => self.test::<Sphere>(placed),
-                Kind::Mesh(_) => {}
+        for (k, occluded) in self.occluded.chunks_mut(BLOCK).enumerate() {
+            let (at, count) = (k * BLOCK, occluded.len());
+            let block = Block::of(&self.rays, at, count);
+            let mut t_max = [0.0; BLOCK];
+            t_max[..count].copy_from_slice(&self.t_max[at..at + count]);
+            let mut met = [0; BLOCK];
+            for &instance in &geometry.simple.shapes {
+                let placed = &geometry.placed[instance as usize];
+                match placed.kind {
+                    Kind::Rectangle => {
+                        test_any::<Rectangle>(&block, placed, &t_max, &mut met);
+                    }
+                    Kind::Disk => test_any::<Disk>(&block, placed, &t_max, &mut met),
+                    Kind::Sphere => test_any::<Sphere>(&block, placed, &t_max, &mut met),
+                    Kind::Mesh(_) => {}
+                }
+            }
+            for (occluded, met) in occluded.iter_mut().zip(&met) {
+                *occluded = *met != 0;
             }
         }
     }
