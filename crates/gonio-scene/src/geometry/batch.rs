@@ -45,22 +45,131 @@ impl Surfaces {
         self.error[i] = point.error;
     }
 
-    /// [`SurfacePoint::offset_origin`] of point `i`.
-    #[inline(always)]
-    pub fn offset_origin(&self, i: usize, direction: Vec3<f32>) -> Vec3<f32> {
-        offset_origin(self.p.get(i), self.ng.get(i), self.error[i], direction)
+    /// [`SurfacePoint::offset_origin`] of each point, for its direction.
+    ///
+    /// # Panics
+    /// If there are fewer directions than points.
+    pub fn offset_origins(&self, directions: &Vectors, origins: &mut Vectors) {
+        origins.resize(self.p.len());
+        dispatch(OffsetOrigins {
+            surfaces: self,
+            directions: directions.axes(),
+            origins: origins.axes_mut(),
+        });
     }
 
-    /// [`SurfacePoint::spawn_ray`] from point `i`.
-    #[inline(always)]
-    pub fn spawn_ray(&self, i: usize, direction: Vec3<f32>) -> Ray {
-        Ray::new(self.offset_origin(i, direction), direction)
+    /// From each point the ray in direction `wi` where `infinite` ([`SurfacePoint::spawn_ray`]), else the one to its `target`
+    /// ([`SurfacePoint::spawn_ray_to`]).
+    ///
+    /// - `rays`: origins and directions, written
+    /// - `t_max`: where each ends, written
+    ///
+    /// # Panics
+    /// If there are fewer directions or targets than points.
+    pub fn spawn_rays(
+        &self,
+        (wi, target, infinite): (&Vectors, &Vectors, &[bool]),
+        rays: [&mut Vectors; 2],
+        t_max: &mut Vec<f32>,
+    ) {
+        let count = self.p.len();
+        t_max.resize(count, 0.0);
+        let [origins, directions] = rays;
+        origins.resize(count);
+        directions.resize(count);
+        dispatch(SpawnRays {
+            surfaces: self,
+            wi: wi.axes(),
+            target: target.axes(),
+            infinite: &infinite[..count],
+            rays: [origins.axes_mut(), directions.axes_mut()],
+            t_max: &mut t_max[..count],
+        });
     }
+}
 
-    /// [`SurfacePoint::spawn_ray_to`] from point `i`.
+/// Vector `i` of columns.
+#[inline(always)]
+fn get(v: &[&[f32]; 3], i: usize) -> Vec3<f32> {
+    Vec3::new(v[0][i], v[1][i], v[2][i])
+}
+
+/// The columns cut to a length, which a compiler then knows.
+#[inline(always)]
+fn cut<'a>(v: &[&'a [f32]; 3], count: usize) -> [&'a [f32]; 3] {
+    [&v[0][..count], &v[1][..count], &v[2][..count]]
+}
+
+// Plain loops, which a compiler turns into vector instructions by itself.
+
+struct OffsetOrigins<'a> {
+    surfaces: &'a Surfaces,
+    directions: [&'a [f32]; 3],
+    origins: [&'a mut [f32]; 3],
+}
+
+impl Kernel for OffsetOrigins<'_> {
+    type Output = ();
     #[inline(always)]
-    pub fn spawn_ray_to(&self, i: usize, target: Vec3<f32>) -> Ray {
-        ray_to(self.offset_origin(i, target - self.p.get(i)), target)
+    fn run<const L: usize>(self) {
+        let s = self.surfaces;
+        let count = s.p.len();
+        let (p, ng) = (s.p.axes(), s.ng.axes());
+        let (p, ng, error) = (cut(&p, count), cut(&ng, count), &s.error[..count]);
+        let wi = cut(&self.directions, count);
+        let [x, y, z] = self.origins;
+        let (x, y, z) = (&mut x[..count], &mut y[..count], &mut z[..count]);
+        for i in 0..count {
+            let o = offset_origin(get(&p, i), get(&ng, i), error[i], get(&wi, i));
+            x[i] = o.x;
+            y[i] = o.y;
+            z[i] = o.z;
+        }
+    }
+}
+
+struct SpawnRays<'a> {
+    surfaces: &'a Surfaces,
+    wi: [&'a [f32]; 3],
+    target: [&'a [f32]; 3],
+    infinite: &'a [bool],
+    rays: [[&'a mut [f32]; 3]; 2],
+    t_max: &'a mut [f32],
+}
+
+impl Kernel for SpawnRays<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const L: usize>(self) {
+        let s = self.surfaces;
+        let count = s.p.len();
+        let (p, ng) = (s.p.axes(), s.ng.axes());
+        let (p, ng, error) = (cut(&p, count), cut(&ng, count), &s.error[..count]);
+        let (wi, target) = (cut(&self.wi, count), cut(&self.target, count));
+        let infinite = &self.infinite[..count];
+        let [[ox, oy, oz], [dx, dy, dz]] = self.rays;
+        let (ox, oy, oz) = (&mut ox[..count], &mut oy[..count], &mut oz[..count]);
+        let (dx, dy, dz) = (&mut dx[..count], &mut dy[..count], &mut dz[..count]);
+        let t_max = &mut self.t_max[..count];
+        for i in 0..count {
+            let (p, wi, target) = (get(&p, i), get(&wi, i), get(&target, i));
+            let endless = infinite[i];
+            let way = target - p;
+            let toward = Vec3::new(
+                if endless { wi.x } else { way.x },
+                if endless { wi.y } else { way.y },
+                if endless { wi.z } else { way.z },
+            );
+            let origin = offset_origin(p, get(&ng, i), error[i], toward);
+            let ray = ray_to(origin, target);
+            ox[i] = origin.x;
+            oy[i] = origin.y;
+            oz[i] = origin.z;
+            dx[i] = if endless { wi.x } else { ray.direction.x };
+            dy[i] = if endless { wi.y } else { ray.direction.y };
+            dz[i] = if endless { wi.z } else { ray.direction.z };
+            t_max[i] = if endless { f32::INFINITY } else { ray.t_max };
+        }
     }
 }
 

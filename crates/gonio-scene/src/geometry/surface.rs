@@ -87,18 +87,12 @@ pub(super) fn ray_to(origin: Vec3<f32>, target: Vec3<f32>) -> Ray {
     let distance = way.length();
     let largest = target.x.abs().max(target.y.abs()).max(target.z.abs());
     let short = (distance * SHORT).max(largest * (16.0 * f32::EPSILON));
-    if distance > short {
-        Ray {
-            origin,
-            direction: way * (1.0 / distance),
-            t_max: distance - short,
-        }
-    } else {
-        Ray {
-            origin,
-            direction: way,
-            t_max: 0.0,
-        }
+    let open = distance > short;
+    let unit = if open { 1.0 / distance } else { 1.0 };
+    Ray {
+        origin,
+        direction: way * unit,
+        t_max: if open { distance - short } else { 0.0 },
     }
 }
 

@@ -89,25 +89,29 @@ impl Direct {
             f: &mut self.f,
             pdf: &self.pdf,
         });
+        let (origins, directions) = (&mut self.origins, &mut self.directions);
+        vertices.surfaces.spawn_rays(
+            (&light.wi, &light.target, &light.infinite),
+            [origins, directions],
+            &mut self.ends,
+        );
+        // The rays of those that reflect anything move to the front.
         self.reflected.clear();
-        self.ends.clear();
-        self.origins.resize(count);
-        self.directions.resize(count);
+        let [ox, oy, oz] = origins.axes_mut();
+        let [dx, dy, dz] = directions.axes_mut();
+        let columns = [ox, oy, oz, dx, dy, dz, &mut self.ends];
         for i in 0..count {
             let reflected = [0, 1, 2].map(|k| self.f[k][i]);
-            if reflected == [0.0; 3] {
-                continue;
+            if reflected != [0.0; 3] {
+                self.reflected.push((i as u32, reflected));
             }
-            let ray = if light.infinite[i] {
-                vertices.surfaces.spawn_ray(i, light.wi.get(i))
-            } else {
-                vertices.surfaces.spawn_ray_to(i, light.target.get(i))
-            };
-            self.origins.set(self.ends.len(), ray.origin);
-            self.directions.set(self.ends.len(), ray.direction);
-            self.ends.push(ray.t_max);
-            self.reflected.push((i as u32, reflected));
         }
+        for column in columns {
+            for (to, (i, _)) in self.reflected.iter().enumerate() {
+                column[to] = column[*i as usize];
+            }
+        }
+        self.ends.truncate(self.reflected.len());
         counts.shadow += self.ends.len() as u64;
         self.origins.resize(self.ends.len());
         self.directions.resize(self.ends.len());

@@ -13,6 +13,8 @@ pub(super) struct Scatter {
     /// Local.
     wi: Vectors,
     wi_world: Vectors,
+    /// Where the paths go on from, off the surface.
+    origins: Vectors,
     weight: [Vec<f32>; 3],
     pdf: Vec<f32>,
     delta: Vec<bool>,
@@ -62,6 +64,9 @@ impl Scatter {
             }
         }
         vertices.to_world(&self.wi, &mut self.wi_world);
+        vertices
+            .surfaces
+            .offset_origins(&self.wi_world, &mut self.origins);
     }
 
     /// Lets the paths in `order` go on from their vertices, those that carry anything.
@@ -124,8 +129,7 @@ impl Scatter {
                     }
                 }
                 next.id[place] = paths.id[k];
-                next.origin
-                    .set(place, vertices.surfaces.offset_origin(i, wi));
+                next.origin.set(place, self.origins.get(i));
                 next.direction.set(place, wi);
                 next.from.set(place, vertices.surfaces.p.get(i));
                 for (column, value) in next.throughput.iter_mut().zip(throughput) {
