@@ -1,20 +1,31 @@
-//! [`Film`]: per-pixel sums of radiance samples, and the layers made of them.
+//! [`Film`]: per-pixel sums of radiance samples.
 
 mod binned;
+mod kept;
+mod layers;
 mod pixel;
 pub(crate) mod record;
+mod row;
+mod triple;
 
+pub use kept::Kept;
+pub use layers::Names;
 pub use pixel::{FilmSample, FirstSurface, PixelSums};
+pub(crate) use row::{FilmRow, Place};
 
 use crate::RenderError;
-use gonio_image::{Channel, ChannelData, Chromaticities, Image, Layers};
+use gonio_image::Image;
+use triple::{Nearest, Triple};
 
 /// Samples that were not finite or negative, kept out of the image.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Rejected {
     /// How many.
     pub count: u64,
-    /// The first of them, in the order of sample, row and column.
+    /// Shares of samples that are in the image, kept out of their layers because they alone are negative or not finite.
+    #[serde(default)]
+    pub in_layers: u64,
+    /// The first rejected sample, in the order of sample, row and column.
     pub first: Option<RejectedSample>,
 }
 
@@ -36,6 +47,7 @@ impl Rejected {
     pub fn merge(&mut self, other: Self) {
         // Counts read from files may be any.
         self.count = self.count.saturating_add(other.count);
+        self.in_layers = self.in_layers.saturating_add(other.in_layers);
         let order = |r: &RejectedSample| (r.sample, r.pixel[1], r.pixel[0]);
         self.first = match (self.first.take(), other.first) {
             (Some(a), Some(b)) => Some(if order(&b) < order(&a) { b } else { a }),
@@ -45,11 +57,16 @@ impl Rejected {
 }
 
 /// The picture being taken: sums of samples per pixel, row-major from the top left.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Film {
     width: u32,
     height: u32,
+    kept: Kept,
     pixels: Vec<PixelSums>,
+    /// As many as [`Kept::triples`] for each pixel, in the same order.
+    triples: Vec<Triple>,
+    /// One a pixel where materials are kept.
+    nearest: Vec<Nearest>,
     rejected: Rejected,
 }
 
@@ -62,17 +79,29 @@ impl Film {
     /// # Errors
     /// A side of 0 pixels, or sums of more than 32 GiB.
     pub fn new(width: u32, height: u32) -> Result<Self, RenderError> {
-        Self::check(width, height)?;
+        Self::keeping(Kept::NOTHING, width, height)
+    }
+
+    /// An empty film that keeps more layers than all do.
+    ///
+    /// # Errors
+    /// As [`Film::new`].
+    pub fn keeping(kept: Kept, width: u32, height: u32) -> Result<Self, RenderError> {
+        Self::check(kept, width, height)?;
+        let pixels = width as usize * height as usize;
         Ok(Self {
             width,
             height,
-            pixels: vec![PixelSums::default(); width as usize * height as usize],
+            kept,
+            pixels: vec![PixelSums::default(); pixels],
+            triples: vec![Triple::default(); pixels * kept.triples()],
+            nearest: vec![Nearest::default(); if kept.material { pixels } else { 0 }],
             rejected: Rejected::default(),
         })
     }
 
-    /// Fails as [`Film::new`] does, without making one.
-    pub(crate) fn check(width: u32, height: u32) -> Result<(), RenderError> {
+    /// Fails as [`Film::keeping`] does, without making one.
+    pub(crate) fn check(kept: Kept, width: u32, height: u32) -> Result<(), RenderError> {
         if width == 0 || height == 0 {
             return Err(RenderError::Parameter {
                 option: "size",
@@ -81,7 +110,13 @@ impl Film {
             });
         }
         let count = u64::from(width) * u64::from(height);
-        let bytes = count.saturating_mul(size_of::<PixelSums>() as u64);
+        let material = if kept.material {
+            size_of::<Nearest>()
+        } else {
+            0
+        };
+        let each = size_of::<PixelSums>() + kept.triples() * size_of::<Triple>() + material;
+        let bytes = count.saturating_mul(each as u64);
         // A pixel's index is a 32-bit number in the sample sequences.
         if bytes > LIMIT_BYTES || count > u64::from(u32::MAX) {
             return Err(RenderError::Limit {
@@ -102,6 +137,10 @@ impl Film {
     pub fn height(&self) -> u32 {
         self.height
     }
+    /// The layers that it keeps beside those that every film has.
+    pub fn kept(&self) -> Kept {
+        self.kept
+    }
     /// The sums, row-major from the top left.
     pub fn pixels(&self) -> &[PixelSums] {
         &self.pixels
@@ -115,12 +154,18 @@ impl Film {
         self.pixels.iter().map(|p| p.samples).max().unwrap_or(0)
     }
 
-    /// The rows as slices that different threads may write.
-    pub(crate) fn rows_mut(&mut self) -> std::slice::ChunksExactMut<'_, PixelSums> {
-        self.pixels.chunks_exact_mut(self.width as usize)
-    }
-    pub(crate) fn pixels_mut(&mut self) -> &mut [PixelSums] {
-        &mut self.pixels
+    /// The rows, which different threads may write.
+    pub(crate) fn rows_mut(&mut self) -> Vec<FilmRow<'_>> {
+        let (kept, width) = (self.kept, self.width as usize);
+        let (mut triples, mut nearest) = (&mut self.triples[..], &mut self.nearest[..]);
+        let rows = self.pixels.chunks_exact_mut(width);
+        rows.map(|pixels| FilmRow {
+            kept,
+            pixels,
+            triples: front(&mut triples, width * kept.triples()),
+            nearest: front(&mut nearest, if kept.material { width } else { 0 }),
+        })
+        .collect()
     }
     pub(crate) fn note_rejected(&mut self, rejected: Rejected) {
         self.rejected.merge(rejected);
@@ -163,41 +208,6 @@ impl Film {
         *errors.select_nth_unstable_by(k, f64::total_cmp).1
     }
 
-    /// All layers for an EXR file: R G B, `albedo`, `normal`, `depth.Z`, `variance` and `samples.count`.
-    ///
-    /// Depth is the mean over the samples that hit a surface, ∞ where none did; the normal is the unnormalised mean; the
-    /// variance is that of the mean.
-    pub fn layers(&self, metadata: Vec<(String, String)>) -> Layers {
-        let mut channels = Vec::new();
-        let mut float = |name: &str, value: &dyn Fn(&PixelSums) -> f32| {
-            channels.push(Channel {
-                name: name.into(),
-                samples: ChannelData::Float(self.pixels.iter().map(value).collect()),
-            });
-        };
-        for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
-            float(name, &|p| p.mean()[c] as f32);
-            float(&format!("albedo.{name}"), &|p| p.albedo()[c]);
-            float(&format!("variance.{name}"), &|p| {
-                p.variance_of_mean()[c] as f32
-            });
-        }
-        for (c, name) in ["X", "Y", "Z"].into_iter().enumerate() {
-            float(&format!("normal.{name}"), &|p| p.normal()[c]);
-        }
-        float("depth.Z", &PixelSums::depth);
-        channels.push(Channel {
-            name: "samples.count".into(),
-            samples: ChannelData::Uint(self.pixels.iter().map(|p| p.samples).collect()),
-        });
-        Layers {
-            channels,
-            metadata,
-            chromaticities: Some(Chromaticities::REC709),
-            ..Layers::new(self.width as usize, self.height as usize)
-        }
-    }
-
     fn map(&self, f: impl Fn(&PixelSums) -> [f32; 3]) -> Image {
         Image {
             width: self.width as usize,
@@ -207,32 +217,11 @@ impl Film {
     }
 }
 
-/// Adds a sample to its pixel, unless a channel is negative or not finite: then it counts as a sample of no light and
-/// is reported. That keeps the image finite without hiding the fault.
-pub(crate) fn add(
-    sums: &mut PixelSums,
-    mut sample: FilmSample,
-    pixel: [u32; 2],
-    index: u32,
-    rejected: &mut Rejected,
-) {
-    if sample
-        .radiance
-        .iter()
-        .any(|l| !(l.is_finite() && *l >= 0.0))
-    {
-        rejected.merge(Rejected {
-            count: 1,
-            first: Some(RejectedSample {
-                pixel,
-                sample: index,
-                radiance: sample.radiance,
-                material: sample.first.map(|f| f.material),
-            }),
-        });
-        sample.radiance = [0.0; 3];
-    }
-    sums.add(&sample);
+/// Takes the first `n` of `rest` from it.
+fn front<'a, T>(rest: &mut &'a mut [T], n: usize) -> &'a mut [T] {
+    let (front, others) = std::mem::take(rest).split_at_mut(n);
+    *rest = others;
+    front
 }
 
 #[cfg(test)]
@@ -246,13 +235,23 @@ mod tests {
         }
     }
 
+    fn at(pixel: [u32; 2], index: u32) -> Place {
+        Place {
+            pixel,
+            index,
+            off_centre: 0.0,
+        }
+    }
+
     #[test]
     fn mean_and_variance_of_known_samples() {
-        let mut sums = PixelSums::default();
+        let mut film = Film::new(1, 1).unwrap();
         let mut rejected = Rejected::default();
         for (k, l) in [1.0, 2.0, 3.0, 6.0].into_iter().enumerate() {
-            add(&mut sums, sample(l), [0, 0], k as u32, &mut rejected);
+            let row = &mut film.rows_mut()[0];
+            row.add(&sample(l), &[], &at([0, 0], k as u32), &mut rejected);
         }
+        let sums = film.pixels()[0];
         assert_eq!(sums.mean(), [3.0; 3]);
         // Deviations −2, −1, 0, 3: s² = 14 / 3, of the mean 14 / 12.
         for v in sums.variance_of_mean() {
@@ -263,12 +262,13 @@ mod tests {
 
     #[test]
     fn faulty_samples_are_counted_and_kept_out() {
-        let mut sums = PixelSums::default();
+        let mut film = Film::new(4, 1).unwrap();
         let mut rejected = Rejected::default();
         for (k, l) in [1.0, f32::NAN, -1.0, f32::INFINITY].into_iter().enumerate() {
-            add(&mut sums, sample(l), [3, 4], k as u32, &mut rejected);
+            let row = &mut film.rows_mut()[0];
+            row.add(&sample(l), &[], &at([3, 4], k as u32), &mut rejected);
         }
-        assert_eq!(sums.mean(), [0.25; 3]);
+        assert_eq!(film.pixels()[3].mean(), [0.25; 3]);
         assert_eq!(rejected.count, 3);
         let first = rejected.first.expect("three were rejected");
         assert_eq!((first.pixel, first.sample), ([3, 4], 1));
@@ -278,6 +278,7 @@ mod tests {
     fn the_first_rejected_sample_does_not_depend_on_the_order() {
         let at = |pixel, sample| Rejected {
             count: 1,
+            in_layers: 0,
             first: Some(RejectedSample {
                 pixel,
                 sample,
@@ -298,8 +299,47 @@ mod tests {
         assert_eq!(forward.first.expect("not empty").pixel, [0, 9]);
     }
 
+    /// A fault that hides in the sum of two shares is in neither layer, and is counted.
+    #[test]
+    fn faulty_shares_are_kept_out_of_their_layers() {
+        let kept = Kept {
+            direct: true,
+            indirect: true,
+            ..Kept::NOTHING
+        };
+        let mut film = Film::keeping(kept, 2, 1).unwrap();
+        let mut rejected = Rejected::default();
+        let row = &mut film.rows_mut()[0];
+        let shares = [[1.0; 3], [2.0; 3]];
+        row.add(&sample(3.0), &shares, &at([0, 0], 0), &mut rejected);
+        row.add(
+            &sample(1.0),
+            &[[2.0; 3], [-1.0; 3]],
+            &at([1, 0], 0),
+            &mut rejected,
+        );
+        assert_eq!((rejected.count, rejected.in_layers), (0, 1));
+        // A sample that is black is black in every layer.
+        row.add(&sample(f32::NAN), &shares, &at([1, 0], 1), &mut rejected);
+        assert_eq!((rejected.count, rejected.in_layers), (1, 1));
+        let names = Names::default();
+        let layers = film.layers(&names, Vec::new());
+        let of = |name: &str| layers.rgb(name).unwrap().pixels.clone();
+        assert_eq!(of("direct"), [[1.0; 3], [1.0; 3]]);
+        assert_eq!(of("indirect"), [[2.0; 3], [0.0; 3]]);
+        assert_eq!(of(""), [[3.0; 3], [0.5; 3]]);
+    }
+
     #[test]
     fn impossible_sizes_are_errors() {
+        let groups = Kept {
+            groups: u32::MAX,
+            ..Kept::NOTHING
+        };
+        assert!(matches!(
+            Film::keeping(groups, 64, 64),
+            Err(RenderError::Limit { .. })
+        ));
         assert!(matches!(
             Film::new(0, 4),
             Err(RenderError::Parameter { .. })

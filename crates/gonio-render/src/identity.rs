@@ -32,13 +32,15 @@ impl fmt::Display for Mismatch {
             found,
             expected,
         } = self;
-        write!(f, "another {what}: {found}, expected {expected}")
+        let another = if what == LAYERS { "other" } else { "another" };
+        write!(f, "{another} {what}: {found}, expected {expected}")
     }
 }
 
 /// The name of the scene's hash among the properties.
 const SCENE: &str = "scene";
 const VERSION: &str = "version";
+const LAYERS: &str = "layers";
 
 impl Identity {
     /// The identity of a picture of a scene, by this version.
@@ -54,6 +56,7 @@ impl Identity {
             sampler,
             filter,
             seed,
+            keep,
         } = options;
         let Camera {
             name: _,
@@ -71,6 +74,7 @@ impl Identity {
             ("sampler", format!("{sampler:?}")),
             ("filter", filter.name().to_owned()),
             ("seed", seed.to_string()),
+            (LAYERS, keep.to_string()),
         ];
         Self(properties.map(|(k, v)| (k.to_owned(), v)).into())
     }
@@ -80,8 +84,8 @@ impl Identity {
         self.0.iter().map(|(k, v)| (k.as_str(), v.as_str()))
     }
 
-    /// The value of a property: `version`, `scene`, `size`, `camera`, `integrator`, `sampler`, `filter`, `seed`; nothing if there is
-    /// none of this name.
+    /// The value of a property: `version`, `scene`, `size`, `camera`, `integrator`, `sampler`, `filter`, `seed`, `layers`; nothing if there
+    /// is none of this name.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.get(name).map(String::as_str)
     }

@@ -22,7 +22,7 @@ mod render;
 pub mod sensor;
 
 pub use error::RenderError;
-pub use film::{Film, PixelSums, Rejected, RejectedSample};
+pub use film::{Film, Kept, Names, PixelSums, Rejected, RejectedSample};
 pub use filter::PixelFilter;
 pub use identity::{Identity, Mismatch};
 pub use integrator::{Integrator, RayCounts, direct, path};

@@ -10,15 +10,18 @@
 //! | bytes | what |
 //! |---|---|
 //! | 8 | `89 67 6f 6e 69 6f 70 0a`: 0x89, `goniop`, a line feed |
-//! | 4 | version of the format: 1 |
+//! | 4 | version of the format: 2 |
 //! | 4 | length of the header |
 //! | … | the header, JSON: see [`Header`] |
-//! | … | for each pixel, row after row from the top left, its 32 numbers, each in the number of bytes that the header's `columns` say |
+//! | … | for each pixel, row after row from the top left, its numbers, each in the number of bytes that the header's `columns` say |
 //! | 32 | BLAKE3 hash of everything before |
 //!
 //! The numbers of a pixel are: the places of the highest digits (7), the digits of radiance (2 for each of R, G and B), of its square (3
 //! for each) and of depth (2), then the sums of albedo (3) and normal (3) in units of 2⁻²⁴, doubled, those of negative sums 1 less than
-//! twice their amount; hits; samples. A digit of place t weighs 2^(32t − 1075), and the first digit of a sum is that of the highest place.
+//! twice their amount; hits; samples: 32. The layers that the header's `kept` has add to them: the position two sums of three numbers, of
+//! positive components and of negative ones, and `direct`, `indirect` and each group of lights one such sum, of 9 numbers: the places of the
+//! highest digits (3), then the digits (2 for each of three). The material comes last: the bits of a single-precision number, the squared
+//! distance of a sample from the pixel's middle, and 1 and the index of the material, or 0. A digit of place t weighs 2^(32t − 1075), and the first digit of a sum is that of the highest place.
 
 mod merge;
 mod read;
@@ -28,19 +31,20 @@ pub use merge::Parts;
 pub use read::{Opened, is_one, open};
 pub use write::{write, write_alone};
 
+use crate::film::{Kept, Names};
 use crate::{Film, Identity, RayCounts, Rejected, RejectedSample, RenderError};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::time::Duration;
 
 const MAGIC: [u8; 8] = *b"\x89goniop\n";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Bytes before the header.
 const BEFORE: u64 = 16;
 /// Bytes of the hash.
 const HASH: u64 = 32;
 /// Bytes that a header may have.
-const LARGEST_HEADER: u32 = 1 << 20;
+const LARGEST_HEADER: u32 = 1 << 26;
 
 /// A film, with the samples that it holds and what they cost.
 #[derive(Debug, Clone)]
@@ -61,8 +65,16 @@ impl Exposure {
     /// # Errors
     /// As [`Film::new`].
     pub fn new(width: u32, height: u32, first: u32) -> Result<Self, RenderError> {
+        Self::keeping(Kept::NOTHING, width, height, first)
+    }
+
+    /// As [`Exposure::new`], of a film that keeps more layers.
+    ///
+    /// # Errors
+    /// As [`Film::keeping`].
+    pub fn keeping(kept: Kept, width: u32, height: u32, first: u32) -> Result<Self, RenderError> {
         Ok(Self {
-            film: Film::new(width, height)?,
+            film: Film::keeping(kept, width, height)?,
             samples: first..first,
             rays: RayCounts::default(),
             elapsed: Duration::ZERO,
@@ -79,6 +91,8 @@ pub struct Label {
     pub scene: String,
     /// Samples per pixel of the whole picture, if that is settled.
     pub of: Option<u32>,
+    /// What the indices of materials and groups of lights are names of.
+    pub names: Names,
 }
 
 /// The header of a part.
@@ -90,6 +104,10 @@ pub struct Header {
     pub scene: String,
     /// Samples per pixel of the whole picture, if that is settled.
     pub of: Option<u32>,
+    /// What the indices of materials and groups of lights are names of.
+    pub names: Names,
+    /// Layers beside those that every film has.
+    pub kept: Kept,
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
@@ -124,6 +142,7 @@ impl Header {
             identity: self.identity.clone(),
             scene: self.scene.clone(),
             of: self.of,
+            names: self.names.clone(),
         }
     }
 }
@@ -132,6 +151,7 @@ impl Header {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct StoredRejected {
     count: u64,
+    in_layers: u64,
     first: Option<StoredSample>,
 }
 
@@ -147,6 +167,7 @@ impl From<&Rejected> for StoredRejected {
     fn from(rejected: &Rejected) -> Self {
         Self {
             count: rejected.count,
+            in_layers: rejected.in_layers,
             first: rejected.first.as_ref().map(|first| StoredSample {
                 pixel: first.pixel,
                 sample: first.sample,
@@ -161,6 +182,7 @@ impl From<StoredRejected> for Rejected {
     fn from(stored: StoredRejected) -> Self {
         Self {
             count: stored.count,
+            in_layers: stored.in_layers,
             first: stored.first.map(|first| RejectedSample {
                 pixel: first.pixel,
                 sample: first.sample,

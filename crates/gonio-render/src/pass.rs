@@ -1,8 +1,9 @@
 //! [`take_pass`]: a range of samples of every pixel.
 
-use crate::film::{self, Film, FilmSample, PixelSums, Rejected};
+use crate::film::{Film, FilmRow, Place, Rejected};
 use crate::integrator::dimension;
-use crate::integrator::wavefront::{Plan, WAVE, Wavefront};
+use crate::integrator::shares::{Shares, Split};
+use crate::integrator::wavefront::{Gathered, Plan, WAVE, Wavefront};
 use crate::{RayCounts, RenderOptions};
 use gonio_num::{Vec3, Vectors};
 use gonio_radiometry::sequence::{SampleStream, SampleStreams, SamplerKind};
@@ -17,16 +18,20 @@ pub(crate) fn take_pass(
     film: &mut Film,
     range: std::ops::Range<u32>,
 ) -> RayCounts {
-    let rows: Vec<&mut [PixelSums]> = film.rows_mut().collect();
-    let plan = Plan::new(scene, &options.integrator);
-    let parts: Vec<(RayCounts, Rejected)> = rows
+    let split = Split::new(&film.kept(), &scene.lights);
+    let plan = Plan::new(scene, &options.integrator, &split);
+    let parts: Vec<(RayCounts, Rejected)> = film
+        .rows_mut()
         .into_par_iter()
         .enumerate()
         .map_init(
             || plan.as_ref().map(Row::new),
-            |waves, (y, row)| match waves {
-                Some(waves) => waves.take(camera, options, y as u32, row, range.clone()),
-                None => take_row(scene, camera, options, y as u32, row, range.clone()),
+            |waves, (y, mut row)| match waves {
+                Some(waves) => waves.take(camera, options, y as u32, &mut row, range.clone()),
+                None => {
+                    let shot = (scene, camera, options, &split);
+                    take_row(shot, y as u32, &mut row, range.clone())
+                }
             },
         )
         .collect();
@@ -40,24 +45,39 @@ pub(crate) fn take_pass(
 
 /// The samples of a row, one after the other.
 fn take_row(
-    scene: &Scene,
-    camera: &Camera,
-    options: &RenderOptions,
+    (scene, camera, options, split): (&Scene, &Camera, &RenderOptions, &Split),
     y: u32,
-    row: &mut [PixelSums],
+    row: &mut FilmRow<'_>,
     range: std::ops::Range<u32>,
 ) -> (RayCounts, Rejected) {
     let mut counts = RayCounts::default();
     let mut rejected = Rejected::default();
     let mut around = Surroundings::of(scene);
-    for (x, sums) in row.iter_mut().enumerate() {
-        let pixel = [x as u32, y];
-        for k in range.clone() {
-            let (ray, mut stream) = camera_ray(camera, options, pixel, k);
-            let interior = around.at(ray.origin);
-            let integrator = &options.integrator;
-            let sample = integrator.radiance(scene, &ray, interior, &mut stream, &mut counts);
-            film::add(sums, sample, pixel, k, &mut rejected);
+    let mut values = vec![[0.0; 3]; split.count()];
+    for x in 0..row.len() as u32 {
+        for index in range.clone() {
+            let shot = camera_ray(camera, options, [x, y], index);
+            let interior = around.at(shot.ray.origin);
+            values.fill([0.0; 3]);
+            let mut shares = Shares {
+                split,
+                values: &mut values,
+            };
+            let mut stream = shot.stream;
+            let sample = options.integrator.radiance_in_shares(
+                scene,
+                &shot.ray,
+                interior,
+                &mut stream,
+                &mut counts,
+                &mut shares,
+            );
+            let place = Place {
+                pixel: [x, y],
+                index,
+                off_centre: shot.off_centre,
+            };
+            row.add(&sample, &values, &place, &mut rejected);
         }
     }
     (counts, rejected)
@@ -70,9 +90,10 @@ struct Row<'a> {
     streams: SampleStreams,
     offset: [Vec<f32>; 2],
     lens: [Vec<f32>; 2],
+    off_centre: Vec<f32>,
     origins: Vectors,
     directions: Vectors,
-    samples: Vec<FilmSample>,
+    light: Gathered<'a>,
 }
 
 impl<'a> Row<'a> {
@@ -83,9 +104,10 @@ impl<'a> Row<'a> {
             streams: SampleStreams::new(SamplerKind::default()),
             offset: [const { Vec::new() }; 2],
             lens: [const { Vec::new() }; 2],
+            off_centre: Vec::new(),
             origins: Vectors::default(),
             directions: Vectors::default(),
-            samples: Vec::new(),
+            light: Gathered::new(plan),
         }
     }
 
@@ -94,7 +116,7 @@ impl<'a> Row<'a> {
         camera: &Camera,
         options: &RenderOptions,
         y: u32,
-        row: &mut [PixelSums],
+        row: &mut FilmRow<'_>,
         range: std::ops::Range<u32>,
     ) -> (RayCounts, Rejected) {
         let mut counts = RayCounts::default();
@@ -106,12 +128,15 @@ impl<'a> Row<'a> {
             self.places.clear();
             self.places.extend(places.by_ref().take(WAVE));
             self.start(camera, options, y);
-            let (samples, rays) = (&mut self.samples, [&self.origins, &self.directions]);
-            self.waves
-                .radiance(rays, &self.streams, samples, &mut counts);
-            for (sample, &(x, k)) in samples.iter().zip(&self.places) {
-                let sums = &mut row[x as usize];
-                film::add(sums, *sample, [x, y], k, &mut rejected);
+            let (light, rays) = (&mut self.light, [&self.origins, &self.directions]);
+            self.waves.radiance(rays, &self.streams, light, &mut counts);
+            for (i, &(x, index)) in self.places.iter().enumerate() {
+                let place = Place {
+                    pixel: [x, y],
+                    index,
+                    off_centre: self.off_centre[i],
+                };
+                row.add(&light.samples[i], light.shares(i), &place, &mut rejected);
             }
         }
         (counts, rejected)
@@ -125,13 +150,17 @@ impl<'a> Row<'a> {
             let stream = SampleStream::new(options.sampler, options.seed, y * width + x, k);
             self.streams.push(&stream);
         }
-        for column in self.offset.iter_mut().chain(&mut self.lens) {
+        for column in (self.offset.iter_mut())
+            .chain(&mut self.lens)
+            .chain([&mut self.off_centre])
+        {
             column.resize(self.places.len(), 0.0);
         }
         let [u, v] = &mut self.offset;
         self.streams.draw(dimension::FILM, [&mut *u, &mut *v]);
         for (i, &(x, _)) in self.places.iter().enumerate() {
             let [dx, dy] = options.filter.sample([u[i], v[i]]);
+            self.off_centre[i] = off_centre([dx, dy]);
             u[i] = (x as f32 + dx) / width as f32;
             v[i] = (y as f32 + dy) / height as f32;
         }
@@ -146,13 +175,16 @@ impl<'a> Row<'a> {
     }
 }
 
-/// The ray of sample `k` of `pixel`, and the numbers that its path goes on with: functions of (seed, pixel, k) alone.
-fn camera_ray(
-    camera: &Camera,
-    options: &RenderOptions,
-    pixel: [u32; 2],
-    k: u32,
-) -> (Ray, SampleStream) {
+/// A sample before its path.
+struct Shot {
+    ray: Ray,
+    /// The numbers that its path goes on with.
+    stream: SampleStream,
+    off_centre: f32,
+}
+
+/// Sample `k` of `pixel`: a function of (seed, pixel, k) alone.
+fn camera_ray(camera: &Camera, options: &RenderOptions, pixel: [u32; 2], k: u32) -> Shot {
     let (width, height) = (options.width, options.height);
     let index = pixel[1] * width + pixel[0];
     let mut stream = SampleStream::new(options.sampler, options.seed, index, k);
@@ -163,7 +195,19 @@ fn camera_ray(
         (pixel[1] as f32 + offset[1]) / height as f32,
     ];
     let aspect = width as f32 / height as f32;
-    (camera.ray(on_film, aspect, lens), stream)
+    Shot {
+        ray: camera.ray(on_film, aspect, lens),
+        stream,
+        off_centre: off_centre(offset),
+    }
+}
+
+/// Squared distance from a pixel's middle, in pixels.
+///
+/// - `offset`: from its upper left corner
+fn off_centre([x, y]: [f32; 2]) -> f32 {
+    let (x, y) = (x - 0.5, y - 0.5);
+    x * x + y * y
 }
 
 /// The bodies that rays start in. Most cameras start all rays at one point, so the last one is remembered.
@@ -195,6 +239,7 @@ impl<'a> Surroundings<'a> {
 mod tests {
     use super::*;
     use crate::Integrator;
+    use crate::film::Kept;
     use crate::integrator::{EnvironmentSampling, Path};
     use gonio_brdf::ModelSpec;
     use gonio_env::{Environment, Layout};
@@ -340,17 +385,26 @@ mod tests {
                 }),
                 ..RenderOptions::default()
             };
-            let plan = Plan::new(&scene, &options.integrator).unwrap();
+            let kept = Kept {
+                position: true,
+                material: true,
+                direct: true,
+                indirect: true,
+                groups: scene.lights.groups().len() as u32,
+            };
+            let split = Split::new(&kept, &scene.lights);
+            let plan = Plan::new(&scene, &options.integrator, &split).unwrap();
             let mut waves = Row::new(&plan);
             let mut lit = 0;
             for y in 0..options.height {
-                let mut one = vec![PixelSums::default(); options.width as usize];
+                let mut one = Film::keeping(kept, options.width, 1).unwrap();
                 let mut many = one.clone();
-                let alone = take_row(&scene, &camera, &options, y, &mut one, 3..10);
-                let together = waves.take(&camera, &options, y, &mut many, 3..10);
+                let shot = (&scene, &camera, &options, &split);
+                let alone = take_row(shot, y, &mut one.rows_mut()[0], 3..10);
+                let together = waves.take(&camera, &options, y, &mut many.rows_mut()[0], 3..10);
                 assert_eq!(alone, together, "{guide:?}, row {y}");
                 assert_eq!(one, many, "{guide:?}, row {y}");
-                lit += one.iter().filter(|p| p.mean()[0] > 0.0).count();
+                lit += one.pixels().iter().filter(|p| p.mean()[0] > 0.0).count();
             }
             // The test would not notice anything in the dark.
             assert!(lit > 500, "{lit}");

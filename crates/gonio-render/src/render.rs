@@ -1,6 +1,6 @@
 //! [`render`]: a picture, pass by pass.
 
-use crate::film::Film;
+use crate::film::{Film, Kept};
 use crate::pass::take_pass;
 use crate::{Exposure, Integrator, PixelFilter, RayCounts, RenderError};
 use gonio_radiometry::sequence::SamplerKind;
@@ -36,6 +36,8 @@ pub struct RenderOptions {
     pub filter: PixelFilter,
     /// Seed of the sequence.
     pub seed: u64,
+    /// Layers to keep beside those that every film has. They leave the picture as it is, to the bit.
+    pub keep: Kept,
 }
 
 impl Default for RenderOptions {
@@ -52,6 +54,7 @@ impl Default for RenderOptions {
             sampler: SamplerKind::Sobol,
             filter: PixelFilter::default(),
             seed: 0,
+            keep: Kept::NOTHING,
         }
     }
 }
@@ -103,14 +106,15 @@ const LEAST_SAMPLES_FOR_NOISE: u32 = 16;
 /// are taken.
 ///
 /// # Errors
-/// A film of no pixels or too many, no samples, or a noise target that is not positive.
+/// A film of no pixels or too many, no samples, a noise target that is not positive, or another number of groups of lights than the scene
+/// has.
 pub fn render(
     scene: &Scene,
     camera: &Camera,
     options: &RenderOptions,
     mut progress: impl FnMut(&Progress, &Film) -> ControlFlow<()>,
 ) -> Result<(Film, Stop), RenderError> {
-    let mut exposure = Exposure::new(options.width, options.height, 0)?;
+    let mut exposure = Exposure::keeping(options.keep, options.width, options.height, 0)?;
     let stop = expose(scene, camera, options, &mut exposure, |report, exposure| {
         progress(report, &exposure.film)
     })?;
@@ -121,7 +125,7 @@ pub fn render(
 /// of `exposure` as well. Whatever `exposure` began from, and however often it was interrupted, the sums are those of its range of samples.
 ///
 /// # Errors
-/// As [`render`]; an exposure of another size, or one that has more samples than the target.
+/// As [`render`]; an exposure of another size or of other layers, or one that has more samples than the target.
 pub fn expose(
     scene: &Scene,
     camera: &Camera,
@@ -130,6 +134,7 @@ pub fn expose(
     mut progress: impl FnMut(&Progress, &Exposure) -> ControlFlow<()>,
 ) -> Result<Stop, RenderError> {
     check(options, exposure)?;
+    options.keep.check(scene.lights.groups().len())?;
     let target = options.target;
     let (start, before) = (Instant::now(), exposure.elapsed);
     let (first, went_on_from) = (exposure.samples.start, exposure.samples.end);
@@ -231,6 +236,9 @@ fn check(options: &RenderOptions, exposure: &Exposure) -> Result<(), RenderError
             format!("{}×{}", options.width, options.height),
             "the size of the film",
         );
+    }
+    if film.kept() != options.keep {
+        return fault("layers", options.keep.to_string(), "those of the film");
     }
     Ok(())
 }

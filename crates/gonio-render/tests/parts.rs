@@ -5,7 +5,9 @@ mod support;
 
 use gonio_num::{Affine3, Vec3};
 use gonio_render::part::{self, Label, Opened};
-use gonio_render::{Exposure, Identity, Parts, RenderError, RenderOptions, Stop, Target, expose};
+use gonio_render::{
+    Exposure, Identity, Kept, Names, Parts, RenderError, RenderOptions, Stop, Target, expose,
+};
 use gonio_scene::{Camera, Light, Scene, SceneBuilder, Shape};
 use std::ops::{ControlFlow, Range};
 use std::path::{Path, PathBuf};
@@ -22,10 +24,11 @@ fn scene() -> Scene {
     let lamp = emitter("lambertian:reflectance=0", [500.0, 300.0, 1.0]);
     let above = ceiling(3.0, 0.2).then(&Affine3::translation(Vec3::new(1.5, 0.0, 0.0)));
     add(&mut scene, Shape::Rectangle, above, lamp);
-    scene.light(Light::Point {
+    let fill = Light::Point {
         position: Vec3::new(-2.0, 4.0, 1.0),
         intensity: [0.01; 3],
-    });
+    };
+    scene.light_in(fill, "fill");
     scene.build().unwrap()
 }
 
@@ -36,8 +39,23 @@ fn camera() -> Camera {
 /// 12 × 12 pixels of 37 samples: no power of two.
 const SPP: u32 = 37;
 
+/// All layers there are: what holds for the picture holds for them.
 fn settings() -> RenderOptions {
-    options(INTEGRATORS[1], SAMPLERS[1], 12, SPP)
+    RenderOptions {
+        keep: Kept {
+            position: true,
+            material: true,
+            direct: true,
+            indirect: true,
+            groups: 2,
+        },
+        ..options(INTEGRATORS[1], SAMPLERS[1], 12, SPP)
+    }
+}
+
+/// Of the default size, and of all layers.
+fn exposure(first: u32) -> Exposure {
+    Exposure::keeping(settings().keep, 12, 12, first).unwrap()
 }
 
 fn label(of: Option<u32>) -> Label {
@@ -45,6 +63,7 @@ fn label(of: Option<u32>) -> Label {
         identity: Identity::new("00ff", &camera(), &settings()),
         scene: "parts".into(),
         of,
+        names: Names::of(&scene()),
     }
 }
 
@@ -62,7 +81,7 @@ fn until(end: u32) -> RenderOptions {
 
 /// The samples of a range, on some threads.
 fn taken(scene: &Scene, range: Range<u32>, threads: usize) -> Exposure {
-    let mut exposure = Exposure::new(12, 12, range.start).unwrap();
+    let mut exposure = exposure(range.start);
     go_on(scene, &mut exposure, range.end, threads);
     exposure
 }
@@ -83,7 +102,11 @@ fn go_on(scene: &Scene, exposure: &mut Exposure, end: u32, threads: usize) {
 fn hash(exposure: &Exposure) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.exr");
-    exposure.film.layers(Vec::new()).write_exr(&path).unwrap();
+    exposure
+        .film
+        .layers(&Names::of(&scene()), Vec::new())
+        .write_exr(&path)
+        .unwrap();
     blake3::hash(&std::fs::read(path).unwrap()).to_string()
 }
 
@@ -133,7 +156,7 @@ fn any_interruptions_leave_the_same_hash() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint");
     for ends in [vec![1, 9, 10, 33], vec![36], (1..SPP).collect()] {
-        let mut exposure = Exposure::new(12, 12, 0).unwrap();
+        let mut exposure = exposure(0);
         for end in ends {
             go_on(&scene, &mut exposure, end, 2);
             part::write_alone(&path, &label(None), &exposure).unwrap();
@@ -165,7 +188,7 @@ fn noise_stops_it_at_the_same_sample() {
         ..settings()
     };
     let run = |every: Option<u32>| {
-        let mut exposure = Exposure::new(12, 12, 0).unwrap();
+        let mut exposure = exposure(0);
         loop {
             let begun = exposure.samples.end;
             let pause = |_: &_, e: &Exposure| match every {
@@ -227,6 +250,26 @@ fn parts_that_do_not_belong_together_are_refused() {
             "0-3.gonio",
         ],
     );
+    let fewer = RenderOptions {
+        keep: Kept {
+            groups: 0,
+            ..settings().keep
+        },
+        ..settings()
+    };
+    let without_groups = Label {
+        identity: Identity::new("00ff", &camera(), &fewer),
+        ..label(Some(8))
+    };
+    let path = folder.path().join("fewer.gonio");
+    part::write(&path, &without_groups, &taken(&scene, 3..8, 2)).unwrap();
+    refused(
+        &[&a, &path],
+        &[
+            "fewer.gonio",
+            "other layers: position, material, direct, indirect, expected position, material, direct, indirect, groups as in",
+        ],
+    );
     refused(&[&folder.path().to_owned()], &["a folder"]);
     refused(
         &[&folder.path().join("none.gonio")],
@@ -282,7 +325,7 @@ fn damaged_parts_are_errors() {
         error(&changed)
     };
     assert!(with(0..8, b"\x89PNG\r\n\x1a\n").contains("byte 0"));
-    assert!(with(8..12, &[2, 0, 0, 0]).contains("version 2 of the format, expected version 1"));
+    assert!(with(8..12, &[1, 0, 0, 0]).contains("version 1 of the format, expected version 2"));
     assert!(with(12..16, &[255; 4]).contains("a header of 4294967295 bytes"));
     assert!(error(b"").contains("the end of the file, of 0 bytes"));
     assert!(error(&[0; 100]).contains("a part of a picture"));
@@ -308,6 +351,12 @@ fn headers_that_lie_are_errors() {
     // One sample fewer than the pixels have.
     assert!(with("\"first\":2", "\"first\":3").contains("pixel 0, 0"));
     assert!(with("\"columns\":[1", "\"columns\":[9").contains("columns"));
+    // Layers that the columns don't have, and too many of them; groups without names.
+    assert!(with("\"position\":true", "\"position\":false").contains("67 widths of 0 to 8"));
+    assert!(with("\"groups\":2", "\"groups\":4000000000").contains("more than the limit"));
+    assert!(
+        with("\"groups\":[\"fill\",", "\"groups\":[").contains("2, as many as there are groups")
+    );
     assert!(with("\"seconds\":", "\"seconds\":-").contains("seconds"));
     assert!(with("\"identity\"", "\"identitx\"").contains("identity"));
 }
@@ -322,9 +371,16 @@ fn exposures_that_do_not_fit_are_errors() {
     };
     let mut other_size = Exposure::new(8, 8, 0).unwrap();
     assert!(try_with(&mut other_size, &settings()).is_err());
+    let mut without = Exposure::new(12, 12, 0).unwrap();
+    let error = try_with(&mut without, &settings()).unwrap_err().to_string();
+    let all = "position, material, direct, indirect, groups";
+    assert_eq!(
+        error,
+        format!("layers is {all}, expected those of the film")
+    );
     let mut more = taken(&scene, 0..4, 1);
     let error = try_with(&mut more, &until(3)).unwrap_err().to_string();
     assert!(error.contains("3, after 4 that are taken"), "{error}");
-    let mut later = Exposure::new(12, 12, 40).unwrap();
+    let mut later = exposure(40);
     assert!(try_with(&mut later, &until(40)).is_err());
 }

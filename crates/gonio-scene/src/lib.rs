@@ -22,7 +22,9 @@ pub use error::SceneError;
 pub use files::{Files, Told, Watch};
 pub use geometry::{Aabb, AreaSample, Geometry, Instance, Shape, SurfacePoint, Surfaces};
 pub use interior::{Body, Interior};
-pub use light::{Light, LightRef, LightSample, LightSamples, LightTarget, Lights, SpotCone};
+pub use light::{
+    Light, LightRef, LightSample, LightSamples, LightTarget, Lights, NO_GROUP, SpotCone,
+};
 pub use material::{Material, Shading, facing_frame};
 pub use mesh::TriangleMesh;
 pub use ray::{Hit, Ray};

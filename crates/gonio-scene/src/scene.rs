@@ -320,7 +320,7 @@ impl Scene {
         }
     }
 
-    /// Puts another environment in the place of the present one, or takes it away.
+    /// Puts another environment in the place of the present one, in its group of lights, or takes it away.
     pub fn set_environment(&mut self, environment: Option<Environment>) {
         let punctual = self
             .lights
@@ -333,6 +333,7 @@ impl Scene {
             &self.materials,
             punctual,
             environment,
+            self.lights.given_groups().clone(),
         );
         self.review_lights();
     }

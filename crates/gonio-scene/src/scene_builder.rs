@@ -1,6 +1,7 @@
 //! [`SceneBuilder`], which puts a scene together.
 
 use crate::geometry::{Geometry, Instance, Shape};
+use crate::light::group::LightGroups;
 use crate::light::{Light, Lights};
 use crate::{Camera, Material, Scene, SceneError};
 use gonio_env::Environment;
@@ -31,6 +32,7 @@ pub struct SceneBuilder {
     materials: Vec<Material>,
     lights: Vec<Light>,
     environment: Option<Environment>,
+    groups: LightGroups,
     cameras: Vec<Camera>,
     film_size: Option<[u32; 2]>,
     warnings: Vec<String>,
@@ -107,6 +109,28 @@ impl SceneBuilder {
         }
     }
 
+    /// As [`SceneBuilder::light`], in a group of lights, whose light a picture tells apart.
+    pub fn light_in(&mut self, light: Light, group: impl Into<String>) {
+        if let Light::Environment(_) = light {
+            self.environment_group(group);
+        } else if light.is_delta() {
+            self.groups.punctual.resize(self.lights.len(), None);
+            self.groups.punctual.push(Some(group.into()));
+        }
+        self.light(light);
+    }
+
+    /// Puts the environment into a group of lights, this one and any that takes its place.
+    pub fn environment_group(&mut self, group: impl Into<String>) {
+        self.groups.environment = Some(group.into());
+    }
+
+    /// Puts the instances from index `first` on, those of them that shine, into a group of lights, whichever their materials' are.
+    pub fn group_from(&mut self, first: usize, group: impl Into<String>) {
+        let instances = first as u32..self.instances.len() as u32;
+        self.groups.instances.push((instances, group.into()));
+    }
+
     /// Sets the environment.
     pub fn environment(&mut self, environment: Environment) {
         self.environment = Some(environment);
@@ -142,6 +166,7 @@ impl SceneBuilder {
         for (index, light) in self.lights.iter().enumerate() {
             check_light(index, light)?;
         }
+        self.groups.check(&self.materials)?;
         let mut lights = self.lights.len() as u32;
         for (index, instance) in self.instances.iter_mut().enumerate() {
             let material = self.materials.get(instance.material as usize);
@@ -155,6 +180,7 @@ impl SceneBuilder {
                 lights - 1
             });
         }
+        self.warn_of_groups_without_lights();
         let transparent = self
             .instances
             .iter()
@@ -176,6 +202,7 @@ impl SceneBuilder {
             &self.materials,
             self.lights,
             self.environment,
+            self.groups,
         );
         let mut scene = Scene {
             name: self.name,
@@ -190,6 +217,17 @@ impl SceneBuilder {
         };
         scene.review_lights();
         Ok(scene)
+    }
+
+    fn warn_of_groups_without_lights(&mut self) {
+        for (instances, name) in self.groups.instances.clone() {
+            let range = instances.start as usize..instances.end as usize;
+            if self.instances[range].iter().all(|i| i.area_light.is_none()) {
+                self.warn(format!(
+                    "a shape of the group of lights `{name}` doesn't shine: its material emits nothing"
+                ));
+            }
+        }
     }
 
     /// A body of glass whose mesh is wound the other way round bends light the wrong way and absorbs outside of itself.

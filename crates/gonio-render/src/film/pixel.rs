@@ -31,6 +31,8 @@ pub struct FirstSurface {
     pub albedo: [f32; 3],
     /// Shading normal, world space, unit.
     pub normal: [f32; 3],
+    /// Where it is, world space.
+    pub position: [f32; 3],
     /// Distance along the ray.
     pub depth: f32,
     /// Index of the material.
@@ -167,6 +169,7 @@ mod tests {
             first: Some(FirstSurface {
                 albedo: [0.5, 0.25, 300.0],
                 normal: [0.0, -1.0, f32::NAN],
+                position: [0.0; 3],
                 depth,
                 material: 0,
             }),

@@ -3,8 +3,11 @@
 //! Lr(ωr) = Σᵢ Lᵢ f cosθᵢ over point, spot and directional lights (12), plus ∫ Li f cosθi dωi over area lights and the
 //! environment (13). Where a surface transmits, the light may come from its other side.
 
+use super::shares::Shares;
 use super::vertex::{Vertex, arrive};
-use super::{EnvironmentSampling, RayCounts, dimension, power_heuristic, product, scaled, sum};
+use super::{
+    EnvironmentSampling, RayCounts, dimension, light_at, power_heuristic, product, scaled, sum,
+};
 use gonio_num::Vec3;
 use gonio_radiometry::sequence::SampleStream;
 use gonio_scene::{Interior, Light, Scene};
@@ -28,6 +31,7 @@ impl Direct {
         interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
+        shares: &mut Shares<'_>,
     ) -> [f32; 3] {
         let mut total = [0.0; 3];
         let guide = self.environment.guide(vertex);
@@ -39,6 +43,7 @@ impl Direct {
                     let by = (environment, candidates);
                     let direct = vertex.reflect_product(scene, by, 0, interior, stream, counts);
                     total = sum(total, direct);
+                    shares.add(Some(light.index()), 1, direct);
                     continue;
                 }
                 stream.seek(dimension::LIGHTS + 3 * light.index());
@@ -54,6 +59,7 @@ impl Direct {
                     }
                 });
                 total = sum(total, direct);
+                shares.add(Some(light.index()), 1, direct);
             }
         }
 
@@ -81,20 +87,24 @@ impl Direct {
             stream,
             counts,
         );
-        let (radiance, density) = match next {
+        let (light, radiance, density) = match next {
             None if self.environment.takes_all(drawn.delta) => return total,
-            None => scene.lights.environment().map_or(([0.0; 3], 0.0), |e| {
-                e.radiance_and_pdf_from_by(guide, vertex.point.p, drawn.wi)
-            }),
+            None => {
+                let lights = &scene.lights;
+                let (radiance, density) = lights.environment().map_or(([0.0; 3], 0.0), |e| {
+                    e.radiance_and_pdf_from_by(guide, vertex.point.p, drawn.wi)
+                });
+                (lights.environment_index(), radiance, density)
+            }
             Some(next) => (
+                light_at(scene, &next.point),
                 scene.emitted(&next.point, next.wo_world),
                 density_of_light(scene, vertex, &next, drawn.wi),
             ),
         };
-        sum(
-            total,
-            scaled(product(throughput, radiance), weight(density)),
-        )
+        let arrived = scaled(product(throughput, radiance), weight(density));
+        shares.add(light, 1, arrived);
+        sum(total, arrived)
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod direct;
 mod environment;
 pub mod path;
+pub(crate) mod shares;
 mod vertex;
 pub(crate) mod wavefront;
 
@@ -13,7 +14,8 @@ pub use vertex::Vertex;
 
 use crate::film::{FilmSample, FirstSurface};
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{Interior, Ray, Scene};
+use gonio_scene::{Interior, Ray, Scene, SurfacePoint};
+use shares::Shares;
 use std::ops::AddAssign;
 
 /// How the reflection equation is solved.
@@ -51,25 +53,43 @@ impl Integrator {
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> FilmSample {
+        self.radiance_in_shares(scene, ray, interior, stream, counts, &mut Shares::none())
+    }
+
+    /// [`Integrator::radiance`], told apart.
+    pub(crate) fn radiance_in_shares(
+        &self,
+        scene: &Scene,
+        ray: &Ray,
+        interior: &Interior,
+        stream: &mut SampleStream,
+        counts: &mut RayCounts,
+        shares: &mut Shares<'_>,
+    ) -> FilmSample {
         let (mut interior, mut left) = (*interior, [1.0; 3]);
         let arrived = vertex::arrive(scene, ray, &mut interior, &mut left, 0, stream, counts);
         let (radiance, first) = match arrived {
-            None => (
-                vertex::environment_radiance(scene, ray.origin, ray.direction),
-                None,
-            ),
+            None => {
+                let radiance = vertex::environment_radiance(scene, ray.origin, ray.direction);
+                shares.add(scene.lights.environment_index(), 0, radiance);
+                (radiance, None)
+            }
             Some(vertex) => {
                 let first = FirstSurface {
                     albedo: vertex.albedo,
                     normal: vertex.facing_normal().to_array(),
+                    position: vertex.point.p.to_array(),
                     depth: vertex.distance,
                     material: vertex.material,
                 };
                 let emitted = scene.emitted(&vertex.point, -ray.direction);
-                let reflected = self.reflected(scene, vertex, &interior, stream, counts);
+                shares.add(light_at(scene, &vertex.point), 0, emitted);
+                let reflected =
+                    self.reflected_in_shares(scene, vertex, &interior, stream, counts, shares);
                 (sum(emitted, reflected), Some(first))
             }
         };
+        shares.attenuate(left);
         FilmSample {
             radiance: product(left, radiance),
             first,
@@ -88,11 +108,31 @@ impl Integrator {
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {
+        self.reflected_in_shares(scene, vertex, interior, stream, counts, &mut Shares::none())
+    }
+
+    fn reflected_in_shares(
+        &self,
+        scene: &Scene,
+        vertex: Vertex<'_>,
+        interior: &Interior,
+        stream: &mut SampleStream,
+        counts: &mut RayCounts,
+        shares: &mut Shares<'_>,
+    ) -> [f32; 3] {
         match self {
-            Self::Direct(direct) => direct.reflected(scene, &vertex, interior, stream, counts),
-            Self::Path(path) => path.reflected(scene, vertex, interior, stream, counts),
+            Self::Direct(direct) => {
+                direct.reflected(scene, &vertex, interior, stream, counts, shares)
+            }
+            Self::Path(path) => path.reflected(scene, vertex, interior, stream, counts, shares),
         }
     }
+}
+
+/// The light that a surface point lies on, if it lies on any.
+#[inline]
+fn light_at(scene: &Scene, point: &SurfacePoint) -> Option<u32> {
+    scene.geometry.instances()[point.instance as usize].area_light
 }
 
 /// How many rays were followed.

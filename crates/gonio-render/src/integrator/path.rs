@@ -1,7 +1,10 @@
 //! Path tracing: the reflection equation, applied again to the light that other surfaces reflect (Kajiya 1986).
 
+use super::shares::Shares;
 use super::vertex::{Vertex, arrive};
-use super::{EnvironmentSampling, RayCounts, dimension, power_heuristic, product, scaled, sum};
+use super::{
+    EnvironmentSampling, RayCounts, dimension, light_at, power_heuristic, product, scaled, sum,
+};
 use gonio_env::Guide;
 use gonio_radiometry::sequence::SampleStream;
 use gonio_scene::{Interior, Light, Scene};
@@ -41,6 +44,7 @@ impl Path {
         interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
+        shares: &mut Shares<'_>,
     ) -> [f32; 3] {
         let mut interior = *interior;
         let mut total = [0.0; 3];
@@ -56,8 +60,11 @@ impl Path {
             let base = dimension::of_bounce(bounce);
             let guide = self.environment.guide(vertex);
             if !vertex.model.is_delta() {
-                let direct = self.direct(scene, vertex, guide, bounce, &interior, stream, counts);
-                total = sum(total, product(throughput, direct));
+                let (light, direct) =
+                    self.direct(scene, vertex, guide, bounce, &interior, stream, counts);
+                let arrived = product(throughput, direct);
+                total = sum(total, arrived);
+                shares.add(light, bounce + 1, arrived);
             }
 
             stream.seek(base + dimension::DIRECTION);
@@ -94,17 +101,17 @@ impl Path {
                 }
                 let (radiance, density) =
                     (scene.lights).environment_radiance_and_pdf_by(guide, from, drawn.wi);
-                let light = scaled(product(throughput, radiance), weight(density));
-                total = sum(total, light);
+                let arrived = scaled(product(throughput, radiance), weight(density));
+                total = sum(total, arrived);
+                shares.add(scene.lights.environment_index(), bounce + 1, arrived);
                 break;
             };
             let radiance = scene.emitted(&next.point, next.wo_world);
             if radiance != [0.0; 3] {
                 let density = scene.lights.pdf_area(from, &next.point, drawn.wi);
-                total = sum(
-                    total,
-                    scaled(product(throughput, radiance), weight(density)),
-                );
+                let arrived = scaled(product(throughput, radiance), weight(density));
+                total = sum(total, arrived);
+                shares.add(light_at(scene, &next.point), bounce + 1, arrived);
             }
 
             if bounce >= self.roulette_after {
@@ -120,8 +127,8 @@ impl Path {
         total
     }
 
-    /// Light that comes straight from one of the lights, scattered toward the viewer, with the weight that joins it to the direction
-    /// drawn by the reflection function.
+    /// Light that comes straight from one of the lights, and which: scattered toward the viewer, with the weight that joins it to the
+    /// direction drawn by the reflection function.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "the state of a path")]
     fn direct(
@@ -133,7 +140,7 @@ impl Path {
         interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
-    ) -> [f32; 3] {
+    ) -> (Option<u32>, [f32; 3]) {
         stream.seek(dimension::of_bounce(bounce));
         let choice = stream.next_1d();
         let position = stream.next_2d();
@@ -150,17 +157,18 @@ impl Path {
                 stream,
                 counts,
             );
-            return scaled(direct, 1.0 / probability);
+            return (Some(chosen.index()), scaled(direct, 1.0 / probability));
         }
         let Some(light) = lights.sample_by(guide, &vertex.point, choice, position) else {
-            return [0.0; 3];
+            return (None, [0.0; 3]);
         };
-        vertex.reflect_light(scene, &light, interior, counts, |density| {
+        let reflected = vertex.reflect_light(scene, &light, interior, counts, |density| {
             if light.delta {
                 1.0
             } else {
                 power_heuristic(light.pdf, density)
             }
-        })
+        });
+        (Some(light.light), reflected)
     }
 }

@@ -71,7 +71,8 @@ impl Parts {
     /// As [`super::Opened::read`]; [`RenderError::Merge`] for a file that was replaced in the meantime.
     pub fn add(&self, mut progress: impl FnMut(usize)) -> Result<Exposure, RenderError> {
         let header = &self.parts[0].1;
-        let mut whole = Exposure::new(header.width, header.height, header.first)?;
+        let (width, height) = (header.width, header.height);
+        let mut whole = Exposure::keeping(header.kept, width, height, header.first)?;
         for (index, (path, header)) in self.parts.iter().enumerate() {
             let opened = open(path)?;
             if opened.header != *header {
@@ -97,6 +98,12 @@ fn fits(part: &(PathBuf, Header), next: &(PathBuf, Header)) -> Result<(), Render
     let other = name(&part.0);
     if let Some(mismatch) = b.identity.mismatch(&a.identity) {
         return Err(differs(format!("{mismatch} as in {other}")));
+    }
+    // Equal pictures have equal ones, unless somebody wrote them by hand.
+    if (a.kept, &a.names, a.width, a.height) != (b.kept, &b.names, b.width, b.height) {
+        return Err(differs(format!(
+            "another list of layers, names or pixels than in {other}"
+        )));
     }
     if a.of != b.of {
         let of = |of: Option<u32>| of.map_or("an open number".into(), |n| n.to_string());

@@ -1,8 +1,8 @@
 //! Reading a part. Every size is compared with the file's before anything is allocated.
 
 use super::{BEFORE, Exposure, HASH, Header, LARGEST_HEADER, MAGIC, VERSION};
-use crate::film::record::{COLUMNS, Widths};
-use crate::{Film, PixelSums, RenderError};
+use crate::film::record::{Record, Widths, columns_of};
+use crate::{Film, RenderError};
 use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -115,12 +115,13 @@ impl<R: Read> Opened<R> {
     /// As [`Opened::add_to`], and as [`Film::new`].
     pub fn read(self) -> Result<Exposure, RenderError> {
         let Header {
+            kept,
             width,
             height,
             first,
             ..
         } = self.header;
-        let mut exposure = Exposure::new(width, height, first)?;
+        let mut exposure = Exposure::keeping(kept, width, height, first)?;
         self.add_to(&mut exposure)?;
         Ok(exposure)
     }
@@ -132,26 +133,27 @@ impl<R: Read> Opened<R> {
     /// [`RenderError::Part`] if the file is damaged, [`RenderError::Io`] if it can't be read.
     ///
     /// # Panics
-    /// If the sizes differ, or the part's samples don't follow.
+    /// If the sizes or the layers differ, or the part's samples don't follow.
     pub fn add_to(mut self, exposure: &mut Exposure) -> Result<(), RenderError> {
         let header = &self.header;
         let film = &mut exposure.film;
         assert_eq!((film.width(), film.height()), (header.width, header.height));
+        assert_eq!(film.kept(), header.kept);
         assert_eq!(exposure.samples.end, header.first);
         let count = header.end - header.first;
         let mut record = vec![0; self.widths.bytes()];
-        for (index, pixel) in film.pixels_mut().iter_mut().enumerate() {
+        let mut sums = Record::default();
+        for index in 0..film.pixels().len() {
             self.source.fill(&mut record, "the sums of a pixel")?;
-            let sums = self.widths.read(&record, count);
-            let Some(sums): Option<PixelSums> = sums else {
+            if self.widths.read(&record, count, &mut sums).is_none() {
                 let (x, y) = (index as u32 % header.width, index as u32 / header.width);
                 return Err(self.source.error(
                     format!("pixel {x}, {y}"),
                     "numbers that no samples add up to",
                     format!("the sums of at most {count} samples"),
                 ));
-            };
-            pixel.merge(&sums);
+            }
+            film.merge_pixel(index, &sums);
         }
         let hash = self.source.hasher.finalize();
         let mut stored = [0; HASH as usize];
@@ -212,13 +214,23 @@ impl<R: Read> Source<R> {
 
     /// Compares what the header says with itself and with the file's length.
     fn check(&self, header: &Header, size: u64) -> Result<Widths, RenderError> {
-        let Some(widths) = Widths::from_slice(&header.columns) else {
+        // A film of that size, or the reason why there is none; before its numbers are counted.
+        Film::check(header.kept, header.width, header.height)?;
+        let Some(widths) = Widths::from_slice(header.kept, &header.columns) else {
             return Err(self.error(
                 "header, columns",
-                format!("{:?}", header.columns),
-                format!("{COLUMNS} widths of 0 to 8 bytes"),
+                format!("{} numbers: {:?}", header.columns.len(), header.columns),
+                format!("{} widths of 0 to 8 bytes", columns_of(&header.kept)),
             ));
         };
+        let (groups, named) = (header.kept.groups as usize, header.names.groups.len());
+        if groups > 0 && groups != named {
+            return Err(self.error(
+                "header, names",
+                format!("{named} names of groups"),
+                format!("{groups}, as many as there are groups"),
+            ));
+        }
         if header.first >= header.end || header.of.is_some_and(|of| header.end > of) {
             let of = header.of.map_or(String::new(), |of| format!(" of {of}"));
             return Err(self.error(
@@ -231,8 +243,6 @@ impl<R: Read> Source<R> {
             let found = format!("{} seconds", header.seconds);
             return Err(self.error("header, seconds", found, "a time"));
         }
-        // A film of that size, or the reason why there is none.
-        Film::check(header.width, header.height)?;
         let pixels = u64::from(header.width) * u64::from(header.height);
         let expected = pixels
             .saturating_mul(widths.bytes() as u64)

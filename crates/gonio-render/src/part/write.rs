@@ -1,6 +1,6 @@
 //! Writing a part.
 
-use super::{Exposure, Header, Label, MAGIC, VERSION};
+use super::{Exposure, Header, LARGEST_HEADER, Label, MAGIC, VERSION};
 use crate::RenderError;
 use crate::film::record::Widths;
 use gonio_image::{rewrite_file_with, write_file_with};
@@ -29,11 +29,13 @@ const PIXELS: usize = 4096;
 
 fn put(file: &mut dyn Write, label: &Label, exposure: &Exposure) -> io::Result<()> {
     let film = &exposure.film;
-    let widths = Widths::of(film.pixels());
+    let widths = Widths::of(film);
     let header = Header {
         identity: label.identity.clone(),
         scene: label.scene.clone(),
         of: label.of,
+        names: label.names.clone(),
+        kept: film.kept(),
         width: film.width(),
         height: film.height(),
         first: exposure.samples.start,
@@ -44,6 +46,12 @@ fn put(file: &mut dyn Write, label: &Label, exposure: &Exposure) -> io::Result<(
         columns: widths.as_slice().to_vec(),
     };
     let header = serde_json::to_vec(&header).map_err(io::Error::other)?;
+    if header.len() > LARGEST_HEADER as usize {
+        return Err(io::Error::other(format!(
+            "the names of materials and the settings take {} bytes, at most {LARGEST_HEADER} can be read again",
+            header.len()
+        )));
+    }
     let mut hasher = blake3::Hasher::new();
     let mut put = |bytes: &[u8]| {
         hasher.update(bytes);
@@ -54,9 +62,12 @@ fn put(file: &mut dyn Write, label: &Label, exposure: &Exposure) -> io::Result<(
     put(&(header.len() as u32).to_le_bytes())?;
     put(&header)?;
     let mut bytes = Vec::with_capacity(PIXELS * widths.bytes());
-    for pixels in film.pixels().chunks(PIXELS) {
+    let count = film.pixels().len();
+    for first in (0..count).step_by(PIXELS) {
         bytes.clear();
-        pixels.iter().for_each(|p| widths.write(p, &mut bytes));
+        for pixel in first..count.min(first + PIXELS) {
+            widths.write(film, pixel, &mut bytes);
+        }
         put(&bytes)?;
     }
     file.write_all(hasher.finalize().as_bytes())

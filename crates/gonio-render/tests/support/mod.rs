@@ -8,7 +8,7 @@ use gonio_env::Environment;
 use gonio_num::{Affine3, Vec3};
 use gonio_radiometry::sequence::SamplerKind;
 use gonio_render::integrator::{Direct, EnvironmentSampling, Path};
-use gonio_render::{Film, Integrator, PixelFilter, RenderOptions, Target, render};
+use gonio_render::{Film, Integrator, Kept, PixelFilter, RenderOptions, Target, render};
 use gonio_scene::{Camera, Light, Material, Scene, SceneBuilder, Shape};
 use gonio_verify::statistics::{Moments, t_test};
 use std::ops::ControlFlow;
@@ -102,6 +102,7 @@ pub fn options(integrator: Integrator, sampler: SamplerKind, side: u32, spp: u32
         sampler,
         filter: PixelFilter::Box,
         seed: 7,
+        keep: Kept::NOTHING,
     }
 }
 

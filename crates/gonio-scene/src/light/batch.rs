@@ -26,6 +26,8 @@ pub struct LightSamples {
     pub pdf: Vec<f32>,
     /// Whether the light is a delta light.
     pub delta: Vec<bool>,
+    /// Index of the light that was chosen.
+    pub light: Vec<u32>,
     /// Points by how their light is sampled on lanes.
     chosen: [Vec<Chosen>; 3],
     from: Vectors,
@@ -56,6 +58,7 @@ impl LightSamples {
         }
         self.infinite.resize(room, false);
         self.delta.resize(room, false);
+        self.light.resize(room, 0);
         for chosen in &mut self.chosen {
             chosen.clear();
         }
@@ -97,6 +100,7 @@ impl Lights {
                 continue;
             };
             let light = light.index;
+            samples.light[i] = light;
             let kind = match (&self.lights[light as usize], &self.emitters[light as usize]) {
                 (Light::Environment(_), _) => Some(ENVIRONMENT),
                 (_, Some(emitter)) if emitter.even_radiance().is_some() => match emitter.form {

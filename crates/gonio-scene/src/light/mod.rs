@@ -6,10 +6,12 @@
 
 mod batch;
 mod emitter;
+pub(crate) mod group;
 mod punctual;
 mod select;
 
 pub use batch::LightSamples;
+pub use group::NO_GROUP;
 pub use punctual::SpotCone;
 pub use select::{LightRef, Lights};
 

@@ -1,6 +1,7 @@
 //! [`Lights`], all lights of a scene, and the choice among them.
 
 use super::emitter::Emitter;
+use super::group::{Grouped, LightGroups};
 use super::punctual::illuminate;
 use super::{Light, LightSample, LightTarget, luminance};
 use crate::{Geometry, Material, SurfacePoint};
@@ -27,6 +28,9 @@ pub struct Lights {
     choice: Option<Discrete>,
     environment: Option<u32>,
     geometry: Arc<Geometry>,
+    /// As the scene says it, for another environment.
+    given_groups: LightGroups,
+    groups: Grouped,
 }
 
 /// One light of a scene, for sums over all lights.
@@ -45,7 +49,12 @@ impl Lights {
         materials: &[Material],
         punctual: Vec<Light>,
         environment: Option<Environment>,
+        given_groups: LightGroups,
     ) -> Self {
+        let mut group_of: Vec<Option<&str>> = vec![None; punctual.len()];
+        for (group, given) in group_of.iter_mut().zip(&given_groups.punctual) {
+            *group = given.as_deref();
+        }
         let mut lights = punctual;
         let mut emitters: Vec<Option<Emitter>> = lights.iter().map(|_| None).collect();
         for (index, instance) in geometry.instances().iter().enumerate() {
@@ -59,21 +68,52 @@ impl Lights {
                 two_sided: material.double_sided,
             });
             emitters.push(Some(Emitter::new(&geometry, index, material)));
+            group_of.push(material.emission.group.as_deref());
+        }
+        for (instances, name) in &given_groups.instances {
+            for instance in instances.clone() {
+                if let Some(light) = geometry.instances()[instance as usize].area_light {
+                    group_of[light as usize] = Some(name);
+                }
+            }
         }
         let environment = environment.map(|e| {
             lights.push(Light::Environment(e));
             emitters.push(None);
+            group_of.push(given_groups.environment.as_deref());
             lights.len() as u32 - 1
         });
         let powers: Vec<f64> = lights.iter().map(|light| power(light, &geometry)).collect();
         let choice = Discrete::new(&probabilities(&powers)).ok();
+        let groups = Grouped::new(group_of.into_iter());
         Self {
             lights,
             emitters,
             choice,
             environment,
             geometry,
+            given_groups,
+            groups,
         }
+    }
+
+    /// The names of the groups of lights, each once; lights that are in none are in `default` together. Empty without lights.
+    pub fn groups(&self) -> &[String] {
+        &self.groups.names
+    }
+
+    /// The place among [`Lights::groups`] of a light's group; nothing if there is no such light.
+    pub fn group(&self, light: u32) -> Option<u32> {
+        self.groups.of.get(light as usize).copied()
+    }
+
+    pub(crate) fn given_groups(&self) -> &LightGroups {
+        &self.given_groups
+    }
+
+    /// The index of the environment among the lights, if there is one.
+    pub fn environment_index(&self) -> Option<u32> {
+        self.environment
     }
 
     /// Number of lights, black ones included.

@@ -62,6 +62,8 @@ pub struct Emission {
     pub texture: Option<Texture>,
     /// Whether the vertex colours multiply the radiance.
     pub vertex_colour: bool,
+    /// The group of lights that surfaces of this material are in.
+    pub group: Option<String>,
 }
 
 /// How much a surface hides.

@@ -98,8 +98,12 @@ fn of_part(header: &Header) -> Map<String, Value> {
     add("seconds", json!(header.seconds));
     add("rejectedSamples", json!(rejected.count));
     if let Some(first) = &rejected.first {
-        add("firstRejectedSample", json!(rejected_in_words(first)));
+        let words = rejected_in_words(first, &header.names.materials);
+        add("firstRejectedSample", json!(words));
     }
+    add("layers", json!(header.kept.to_string()));
+    add("materials", json!(header.names.materials));
+    add("groups", json!(header.names.groups));
     let identity: BTreeMap<&str, &str> = header.identity.properties().collect();
     add("identity", json!(identity));
     found

@@ -93,7 +93,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         warn(&format!(
             "{} samples were negative or not finite and count as black; the first: {}",
             rejected.count,
-            rejected_in_words(first)
+            rejected_in_words(first, &label.names.materials)
         ));
     }
     let samples = whole.samples.end - whole.samples.start;

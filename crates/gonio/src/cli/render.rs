@@ -21,9 +21,9 @@ use gonio_radiometry::sequence::SamplerKind;
 use gonio_render::integrator::{Direct, EnvironmentSampling, Path as PathTracer};
 use gonio_render::part::Label;
 use gonio_render::{
-    Exposure, Identity, Integrator, PixelFilter, Rejected, RenderOptions, Stop, Target,
+    Exposure, Identity, Integrator, Kept, Names, PixelFilter, Rejected, RenderOptions, Stop, Target,
 };
-use gonio_scene::{Camera, Scene};
+use gonio_scene::{Camera, NO_GROUP, Scene};
 use live::{Live, LiveArguments};
 use product::{PictureArguments, is_part, write_all};
 use range::Chosen;
@@ -74,6 +74,17 @@ pub(super) struct Arguments {
     /// The camera, by name or by number from 0
     #[arg(long, value_name = "CAMERA", help_heading = "Picture")]
     camera: Option<String>,
+    /// Further layers of EXR files and parts: where the first surface is (position), what it is made of (material), light after at most one
+    /// reflection (direct) and the rest (indirect), and the light of each group of lights (groups), for 'gonio relight'. Albedo, normal, depth, variance
+    /// and the number of samples are there in any case
+    #[arg(
+        long,
+        value_enum,
+        value_name = "NAME,…",
+        value_delimiter = ',',
+        help_heading = "Picture"
+    )]
+    layers: Vec<LayerName>,
     #[command(flatten, next_help_heading = "Picture")]
     picture: PictureArguments,
     #[command(flatten, next_help_heading = "Picture")]
@@ -134,6 +145,16 @@ pub(super) struct Arguments {
 }
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum LayerName {
+    Position,
+    Material,
+    Direct,
+    Indirect,
+    Groups,
+    All,
+}
+
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum IntegratorName {
     Path,
     Direct,
@@ -160,16 +181,18 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let range = chosen.samples.clone();
     let Loaded {
         scene,
-        notes,
+        mut notes,
         hash,
         name,
     } = scene::load(arguments)?;
+    notes.extend(note_on_groups(arguments, &scene));
     let camera = camera(arguments, &scene);
     let options = options(arguments, &scene, &range);
     let label = Label {
         identity: Identity::new(&hash, &camera, &options),
         scene: name,
         of: chosen.of,
+        names: Names::of(&scene),
     };
     scene.warnings.iter().for_each(|text| warn(text));
     if !arguments.quiet {
@@ -187,7 +210,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let mut exposure = match earlier {
         Some(exposure) => exposure,
-        None => Exposure::new(options.width, options.height, range.start)?,
+        None => {
+            let (width, height) = (options.width, options.height);
+            Exposure::keeping(options.keep, width, height, range.start)?
+        }
     };
     let size = [options.width, options.height];
     let mut live = Live::new(&arguments.live, &arguments.picture, &label.scene, size)?;
@@ -429,7 +455,37 @@ fn options(arguments: &Arguments, scene: &Scene, range: &Range<u32>) -> RenderOp
         },
         filter: arguments.filter,
         seed: arguments.seed,
+        keep: kept(arguments, scene),
     }
+}
+
+fn kept(arguments: &Arguments, scene: &Scene) -> Kept {
+    let asked = |name| {
+        let layers = &arguments.layers;
+        layers.contains(&name) || layers.contains(&LayerName::All)
+    };
+    Kept {
+        position: asked(LayerName::Position),
+        material: asked(LayerName::Material),
+        direct: asked(LayerName::Direct),
+        indirect: asked(LayerName::Indirect),
+        groups: match asked(LayerName::Groups) {
+            true => scene.lights.groups().len() as u32,
+            false => 0,
+        },
+    }
+}
+
+/// What to know where groups of lights are asked for that the scene doesn't have.
+fn note_on_groups(arguments: &Arguments, scene: &Scene) -> Option<String> {
+    let asked = arguments.layers.contains(&LayerName::Groups);
+    let single = matches!(scene.lights.groups(), [only] if only == NO_GROUP);
+    (asked && single).then(|| {
+        format!(
+            "no light of the scene is in a group: the layer group.{NO_GROUP} is the whole picture; \
+             group = \"NAME\" in the scene file puts lights, materials that shine and the environment into groups"
+        )
+    })
 }
 
 fn environment_sampling(arguments: &Arguments) -> EnvironmentSampling {

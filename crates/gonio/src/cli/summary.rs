@@ -67,11 +67,15 @@ impl Summary<'_> {
 }
 
 /// The place of a rejected sample, where the scene is not at hand.
-pub(super) fn rejected_in_words(first: &RejectedSample) -> String {
+///
+/// - `materials`: their names
+pub(super) fn rejected_in_words(first: &RejectedSample, materials: &[String]) -> String {
     let [x, y] = first.pixel;
-    let material = first
-        .material
-        .map_or("no surface".into(), |m| format!("material {m}"));
+    let named = |m: u32| match materials.get(m as usize) {
+        Some(name) => format!("material '{name}'"),
+        None => format!("material {m}"),
+    };
+    let material = first.material.map_or("no surface".into(), named);
     format!(
         "pixel {x}, {y}, sample {}, {material}, radiance {:?}",
         first.sample, first.radiance

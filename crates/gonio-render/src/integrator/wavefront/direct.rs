@@ -125,6 +125,11 @@ impl Direct {
         let all = self.reflected.iter().zip(&self.hidden);
         all.filter(seen).map(|(&(i, light), _)| (i as usize, light))
     }
+
+    /// The light that was sampled at point `i`.
+    pub fn light(&self, i: usize) -> u32 {
+        self.light.light[i]
+    }
 }
 
 /// Turns f into what is reflected of the light sample, with its weight.

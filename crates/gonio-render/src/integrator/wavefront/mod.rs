@@ -9,9 +9,10 @@ mod paths;
 mod scatter;
 mod surface;
 
+use super::shares::{Shares, Split};
 use super::{
-    EnvironmentSampling, Integrator, Path, RayCounts, dimension, power_heuristic, product, scaled,
-    sum,
+    EnvironmentSampling, Integrator, Path, RayCounts, dimension, light_at, power_heuristic,
+    product, scaled, sum,
 };
 use crate::film::{FilmSample, FirstSurface};
 use direct::Direct;
@@ -31,6 +32,8 @@ pub(crate) const WAVE: usize = 1024;
 pub(crate) struct Plan<'a> {
     scene: &'a Scene,
     path: Path,
+    /// How the light of each sample is told apart.
+    split: &'a Split,
     guide: Guide,
     /// For each material its reflection function, if that is the same all over the surface.
     models: Vec<Option<&'a Model<f32, 3>>>,
@@ -48,7 +51,7 @@ const MOST_BUCKETS: usize = 1 << 16;
 impl<'a> Plan<'a> {
     /// Nothing where paths need what waves don't have: surfaces that are partly transparent, bodies that absorb, and the environment
     /// sampled by the surface that it lights.
-    pub fn new(scene: &'a Scene, integrator: &Integrator) -> Option<Self> {
+    pub fn new(scene: &'a Scene, integrator: &Integrator, split: &'a Split) -> Option<Self> {
         let Integrator::Path(path) = integrator else {
             return None;
         };
@@ -77,6 +80,7 @@ impl<'a> Plan<'a> {
         Some(Self {
             scene,
             path: *path,
+            split,
             guide,
             models: scene.materials.iter().map(|m| m.even_model()).collect(),
             bucket,
@@ -149,26 +153,21 @@ impl<'a> Wavefront<'a> {
     /// [`Integrator::radiance`] of many rays, in empty space.
     ///
     /// - `rays`: origins and directions
-    /// - `samples`: one a ray, written
+    /// - `light`: of each ray, written
     pub fn radiance(
         &mut self,
         rays: [&Vectors; 2],
         streams: &SampleStreams,
-        samples: &mut Vec<FilmSample>,
+        light: &mut Gathered<'_>,
         counts: &mut RayCounts,
     ) {
-        samples.clear();
-        let black = FilmSample {
-            radiance: [0.0; 3],
-            first: None,
-        };
-        samples.resize(streams.len(), black);
+        light.begin(streams.len());
         self.begin(rays);
         for segment in 0..=self.plan.path.max_bounces {
             if self.paths.len() == 0 {
                 break;
             }
-            self.follow(segment, samples, counts);
+            self.follow(segment, light, counts);
             if segment == self.plan.path.max_bounces && segment > 0 {
                 break;
             }
@@ -179,7 +178,7 @@ impl<'a> Wavefront<'a> {
             let rays = [&self.paths.origin, &self.paths.direction];
             self.vertices.find(rays, &self.order, &self.hits);
             if segment == 0 {
-                self.note_first_surfaces(samples);
+                self.note_first_surfaces(&mut light.samples);
                 if self.plan.path.max_bounces == 0 {
                     break;
                 }
@@ -193,9 +192,9 @@ impl<'a> Wavefront<'a> {
             self.direct.reflect(self.plan.scene, &self.vertices, counts);
             for (i, contribution) in self.direct.contributions() {
                 let k = self.order[i] as usize;
-                let light = product(self.paths.throughput(k), contribution);
-                let sample = &mut samples[self.paths.id[k] as usize];
-                sample.radiance = sum(sample.radiance, light);
+                let arrived = product(self.paths.throughput(k), contribution);
+                let from = Some(self.direct.light(i));
+                light.add(self.paths.id[k], from, segment + 1, arrived);
             }
             self.scatter.draw(&self.vertices, segment);
             let unscales = self.vertices.transmit();
@@ -208,7 +207,7 @@ impl<'a> Wavefront<'a> {
             );
             std::mem::swap(&mut self.paths, &mut self.next);
         }
-        for (sample, emitted) in samples.iter_mut().zip(&self.emitted) {
+        for (sample, emitted) in light.samples.iter_mut().zip(&self.emitted) {
             sample.radiance = sum(*emitted, sample.radiance);
         }
     }
@@ -233,7 +232,7 @@ impl<'a> Wavefront<'a> {
 
     /// Follows all rays to what they meet, and takes in the light that comes from there. Afterwards `order` has the paths that met a
     /// surface.
-    fn follow(&mut self, segment: u32, samples: &mut [FilmSample], counts: &mut RayCounts) {
+    fn follow(&mut self, segment: u32, light: &mut Gathered<'_>, counts: &mut RayCounts) {
         let (scene, paths) = (self.plan.scene, &self.paths);
         counts.nearest += paths.len() as u64;
         self.order.clear();
@@ -254,17 +253,19 @@ impl<'a> Wavefront<'a> {
             let radiance = scene.emitted(&point, -ray.direction);
             if segment == 0 {
                 self.emitted[i] = radiance;
+                light.tell_apart(paths.id[i], light_at(scene, &point), 0, radiance);
             } else if radiance != [0.0; 3] {
                 let lights = &scene.lights;
                 let density = lights.pdf_area(paths.from.get(i), &point, ray.direction);
-                take_in(paths, i, radiance, density, samples);
+                let arrived = weighted(paths, i, radiance, density);
+                light.add(paths.id[i], light_at(scene, &point), segment, arrived);
             }
         }
-        self.look_around(segment, samples);
+        self.look_around(segment, light);
     }
 
     /// Takes in the environment's light where a ray met nothing.
-    fn look_around(&mut self, segment: u32, samples: &mut [FilmSample]) {
+    fn look_around(&mut self, segment: u32, light: &mut Gathered<'_>) {
         let (lights, paths) = (&self.plan.scene.lights, &self.paths);
         let (Some(environment), false) = (lights.environment(), self.missed.is_empty()) else {
             return;
@@ -274,6 +275,8 @@ impl<'a> Wavefront<'a> {
                 let ray = paths.ray(k as usize);
                 let seen = environment.radiance_from(ray.origin, ray.direction);
                 self.emitted[k as usize] = seen;
+                let from = lights.environment_index();
+                light.tell_apart(paths.id[k as usize], from, 0, seen);
             }
             return;
         }
@@ -289,7 +292,9 @@ impl<'a> Wavefront<'a> {
         for (i, &k) in self.missed.iter().enumerate() {
             let radiance = [0, 1, 2].map(|c| around.radiance[c][i]);
             let density = probability * around.pdf[i];
-            take_in(paths, k as usize, radiance, density, samples);
+            let arrived = weighted(paths, k as usize, radiance, density);
+            let from = lights.environment_index();
+            light.add(paths.id[k as usize], from, segment, arrived);
         }
     }
 
@@ -365,6 +370,7 @@ impl<'a> Wavefront<'a> {
                 samples[self.paths.id[k] as usize].first = Some(FirstSurface {
                     albedo: self.vertices.albedo(group, i),
                     normal: self.vertices.facing_normal(i).to_array(),
+                    position: self.vertices.surfaces.p.get(i).to_array(),
                     depth: self.hits[k].t,
                     material: group.material,
                 });
@@ -373,12 +379,70 @@ impl<'a> Wavefront<'a> {
     }
 }
 
-/// Adds light that path `i` met, with the weight against a light sample of this density.
+/// Light that path `i` met, with the weight against a light sample of this density.
 #[inline(always)]
-fn take_in(paths: &Paths, i: usize, radiance: [f32; 3], density: f32, samples: &mut [FilmSample]) {
+fn weighted(paths: &Paths, i: usize, radiance: [f32; 3], density: f32) -> [f32; 3] {
     // From ∞ the weight is 1, whatever the other density.
     let weight = power_heuristic(paths.pdf[i], density);
-    let light = scaled(product(paths.throughput(i), radiance), weight);
-    let sample = &mut samples[paths.id[i] as usize];
-    sample.radiance = sum(sample.radiance, light);
+    scaled(product(paths.throughput(i), radiance), weight)
+}
+
+/// The samples of a wave as their light comes together.
+#[derive(Debug)]
+pub(crate) struct Gathered<'a> {
+    split: &'a Split,
+    /// One a ray.
+    pub samples: Vec<FilmSample>,
+    /// As many a ray as are told apart.
+    shares: Vec<[f32; 3]>,
+}
+
+impl<'a> Gathered<'a> {
+    pub fn new(plan: &Plan<'a>) -> Self {
+        Self {
+            split: plan.split,
+            samples: Vec::new(),
+            shares: Vec::new(),
+        }
+    }
+
+    fn begin(&mut self, count: usize) {
+        let black = FilmSample {
+            radiance: [0.0; 3],
+            first: None,
+        };
+        self.samples.clear();
+        self.samples.resize(count, black);
+        self.shares.clear();
+        self.shares.resize(count * self.split.count(), [0.0; 3]);
+    }
+
+    /// The shares of sample `i`.
+    pub fn shares(&self, i: usize) -> &[[f32; 3]] {
+        let each = self.split.count();
+        &self.shares[i * each..(i + 1) * each]
+    }
+
+    /// Adds light to the sample `id`, as [`Shares::add`] does to its shares.
+    #[inline(always)]
+    fn add(&mut self, id: u32, light: Option<u32>, reflections: u32, arrived: [f32; 3]) {
+        let sample = &mut self.samples[id as usize];
+        sample.radiance = sum(sample.radiance, arrived);
+        self.tell_apart(id, light, reflections, arrived);
+    }
+
+    /// [`Shares::add`] alone.
+    #[inline(always)]
+    fn tell_apart(&mut self, id: u32, light: Option<u32>, reflections: u32, arrived: [f32; 3]) {
+        let each = self.split.count();
+        if each == 0 {
+            return;
+        }
+        let first = id as usize * each;
+        let mut shares = Shares {
+            split: self.split,
+            values: &mut self.shares[first..first + each],
+        };
+        shares.add(light, reflections, arrived);
+    }
 }

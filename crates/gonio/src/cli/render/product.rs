@@ -22,6 +22,19 @@ pub(in crate::cli) struct PictureArguments {
     pub write_time: bool,
 }
 
+/// The attribute with the names of the groups of lights: a list in JSON, whose layers add up to the picture.
+pub(in crate::cli) const GROUPS: &str = "gonio.groups";
+
+/// Names by their numbers from 1, as JSON: those that the layer of materials has.
+fn numbered(names: &[String]) -> String {
+    // Written out, since a map would be sorted by the texts of the numbers.
+    let each = names.iter().enumerate();
+    let pairs: Vec<String> = each
+        .map(|(i, name)| format!("\"{}\":{}", i + 1, serde_json::json!(name)))
+        .collect();
+    format!("{{{}}}", pairs.join(","))
+}
+
 /// The extension of a part.
 pub(in crate::cli) fn is_part(path: &Path) -> bool {
     destination::extension(path) == "gonio"
@@ -55,7 +68,7 @@ fn write(
     match destination::extension(path).as_str() {
         "gonio" => part::write(path, label, exposure)?,
         "exr" => film
-            .layers(metadata(label, exposure, how.write_time))
+            .layers(&label.names, metadata(label, exposure, how.write_time))
             .write_exr(path)?,
         "png" => film.image().write_png(path, how.tonemap, how.exposure)?,
         _ => film.image().write(path)?,
@@ -91,10 +104,35 @@ fn metadata(label: &Label, exposure: &Exposure, with_time: bool) -> Vec<(String,
             "linear, Rec.709 primaries, D65 white".into(),
         ),
         ("gonio.clamping", "none".into()),
+        (
+            "gonio.variance",
+            "variance.R, G and B: of the mean of the samples".into(),
+        ),
         ("gonio.rejectedSamples", film.rejected().count.to_string()),
     ];
+    let noise = film.noise();
+    if noise.is_finite() {
+        all.push(("gonio.noise", format!("{noise:.6}")));
+    }
     if let Some(first) = &film.rejected().first {
-        all.push(("gonio.firstRejectedSample", rejected_in_words(first)));
+        let words = rejected_in_words(first, &label.names.materials);
+        all.push(("gonio.firstRejectedSample", words));
+    }
+    let kept = film.kept();
+    if kept.shares() > 0 {
+        let count = film.rejected().in_layers.to_string();
+        all.push(("gonio.rejectedInLayers", count));
+    }
+    if kept.direct || kept.indirect {
+        let words = "light after at most one reflection, passages through surfaces included; emission that is seen itself is direct";
+        all.push(("gonio.direct", words.into()));
+    }
+    if kept.material {
+        all.push(("gonio.materials", numbered(&label.names.materials)));
+    }
+    if kept.groups > 0 {
+        let names = &label.names.groups;
+        all.push((GROUPS, serde_json::json!(names).to_string()));
     }
     if with_time {
         all.push((

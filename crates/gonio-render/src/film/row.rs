@@ -1,0 +1,94 @@
+//! [`FilmRow`], the pixels of a row, and how samples enter them.
+
+use super::kept::Kept;
+use super::triple::{Nearest, Triple};
+use super::{FilmSample, PixelSums, Rejected, RejectedSample};
+
+/// A row of a film, which one thread may write.
+pub(crate) struct FilmRow<'a> {
+    pub(super) kept: Kept,
+    pub(super) pixels: &'a mut [PixelSums],
+    /// As many as [`Kept::triples`] for each pixel.
+    pub(super) triples: &'a mut [Triple],
+    /// One a pixel, or none.
+    pub(super) nearest: &'a mut [Nearest],
+}
+
+/// Where a sample belongs.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place {
+    /// Column and row.
+    pub pixel: [u32; 2],
+    /// Index of the sample.
+    pub index: u32,
+    /// Squared distance from the pixel's middle, in pixels.
+    pub off_centre: f32,
+}
+
+impl FilmRow<'_> {
+    /// Pixels.
+    pub fn len(&self) -> usize {
+        self.pixels.len()
+    }
+
+    /// Adds a sample to its pixel, unless a channel is negative or not finite: then it counts as a sample of no light and
+    /// is reported. That keeps the image finite without hiding the fault.
+    ///
+    /// - `shares`: of its radiance, in the order of [`Kept::shares`]; one that is negative or not finite while the whole is sound is kept
+    ///   out of its layer, and counted
+    pub fn add(
+        &mut self,
+        sample: &FilmSample,
+        shares: &[[f32; 3]],
+        place: &Place,
+        rejected: &mut Rejected,
+    ) {
+        let mut sample = *sample;
+        let is_sound = is_light(sample.radiance);
+        if !is_sound {
+            rejected.merge(Rejected {
+                count: 1,
+                in_layers: 0,
+                first: Some(RejectedSample {
+                    pixel: place.pixel,
+                    sample: place.index,
+                    radiance: sample.radiance,
+                    material: sample.first.map(|f| f.material),
+                }),
+            });
+            sample.radiance = [0.0; 3];
+        }
+        let x = place.pixel[0] as usize;
+        self.pixels[x].add(&sample);
+        if self.kept == Kept::NOTHING {
+            return;
+        }
+        let each = self.kept.triples();
+        let triples = &mut self.triples[x * each..(x + 1) * each];
+        if is_sound {
+            let sums = &mut triples[self.kept.first_share()..];
+            for (sum, share) in sums.iter_mut().zip(shares) {
+                if is_light(*share) {
+                    sum.add(*share);
+                } else {
+                    rejected.in_layers += 1;
+                }
+            }
+        }
+        if let (true, Some(first)) = (self.kept.position, &sample.first)
+            && first.position.iter().all(|p| p.is_finite())
+        {
+            // Not by `max`, which may leave −0.
+            triples[0].add(first.position.map(|p| if p > 0.0 { p } else { 0.0 }));
+            triples[1].add(first.position.map(|p| if p < 0.0 { -p } else { 0.0 }));
+        }
+        if let Some(nearest) = self.nearest.get_mut(x) {
+            let material = sample.first.map(|first| first.material);
+            nearest.merge(Nearest::new(place.off_centre, material));
+        }
+    }
+}
+
+fn is_light(radiance: [f32; 3]) -> bool {
+    radiance.iter().all(|l| l.is_finite() && *l >= 0.0)
+}
