@@ -311,6 +311,7 @@ mod tests {
         }
         let mut lamp = material("lambertian:reflectance=0.2");
         lamp.emission.radiance = [6.0, 5.0, 4.0];
+        lamp.emission.group = Some("lamps".into());
         let lamp = scene.material(lamp);
         scene.instance(sphere, placed([0.3; 3], [-1.0, 2.5, 0.0]), lamp);
         scene.instance(floor, placed([0.5, 0.4, 1.0], [1.0, 2.0, -3.0]), lamp);
@@ -324,10 +325,11 @@ mod tests {
         varied.bind_vertex_colour("reflectance").unwrap();
         let varied = scene.material(varied);
         scene.instance(coloured, placed([0.6; 3], [2.0, 0.0, 2.5]), varied);
-        scene.light(Light::Point {
+        let point = Light::Point {
             position: Vec3::new(0.0, 3.0, 3.0),
             intensity: [4.0; 3],
-        });
+        };
+        scene.light_in(point, "key");
         scene.environment(environment);
         let up = Vec3::new(0.0, 1.0, 0.0);
         let eye = Vec3::new(0.0, 2.5, 8.0);
@@ -396,6 +398,7 @@ mod tests {
             let plan = Plan::new(&scene, &options.integrator, &split).unwrap();
             let mut waves = Row::new(&plan);
             let mut lit = 0;
+            assert_eq!(kept.groups, 3);
             for y in 0..options.height {
                 let mut one = Film::keeping(kept, options.width, 1).unwrap();
                 let mut many = one.clone();

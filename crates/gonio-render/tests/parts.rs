@@ -352,7 +352,7 @@ fn headers_that_lie_are_errors() {
     assert!(with("\"first\":2", "\"first\":3").contains("pixel 0, 0"));
     assert!(with("\"columns\":[1", "\"columns\":[9").contains("columns"));
     // Layers that the columns don't have, and too many of them; groups without names.
-    assert!(with("\"position\":true", "\"position\":false").contains("67 widths of 0 to 8"));
+    assert!(with("\"position\":true", "\"position\":false").contains("70 widths of 0 to 8"));
     assert!(with("\"groups\":2", "\"groups\":4000000000").contains("more than the limit"));
     assert!(
         with("\"groups\":[\"fill\",", "\"groups\":[").contains("2, as many as there are groups")

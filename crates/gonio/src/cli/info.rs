@@ -1,7 +1,7 @@
 //! `gonio info`: how a picture or a part of one came to be.
 
 use super::failure::Failure;
-use super::render::product::is_part;
+use super::render::product::{GROUPS, MATERIALS, is_part};
 use super::summary::rejected_in_words;
 use super::terminal::{print, print_json};
 use gonio_image::{Image, Layers};
@@ -81,7 +81,11 @@ fn look(path: &Path) -> Result<Map<String, Value>, Failure> {
         .collect();
     found.insert("channels".into(), json!(channels));
     for (name, value) in &layers.metadata {
-        found.insert(name.clone(), json!(value));
+        let list = match name.as_str() {
+            GROUPS | MATERIALS => serde_json::from_str(value).ok(),
+            _ => None,
+        };
+        found.insert(name.clone(), list.unwrap_or_else(|| json!(value)));
     }
     Ok(found)
 }

@@ -17,6 +17,7 @@ mod merge;
 mod parse;
 mod presets;
 mod progress;
+mod relight;
 mod render;
 mod summary;
 mod terminal;
@@ -52,6 +53,8 @@ enum Command {
     Render(Box<render::Arguments>),
     /// Put the parts of a picture together
     Merge(merge::Arguments),
+    /// Mix the groups of lights of a picture again
+    Relight(relight::Arguments),
     /// Write a rendering in parts as a job for a farm, a cluster or a cloud
     #[command(subcommand)]
     Farm(farm::Command),
@@ -91,6 +94,7 @@ fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Merge(arguments) => merge::run(&arguments),
+        Command::Relight(arguments) => relight::run(&arguments),
         Command::Farm(command) => farm::run(&command),
         Command::Info(arguments) => info::run(&arguments),
         Command::Brdf(command) => brdf::run(command),

@@ -4,7 +4,7 @@ use super::section::{Section, Value};
 use super::source::Source;
 use super::view::refuse;
 use crate::SceneError;
-use crate::light::{Light, SpotCone};
+use crate::light::{Light, SpotCone, group};
 use crate::{LoadOptions, SceneBuilder};
 use gonio_env::{Convention, Environment, Layout, Proxy, Sky};
 use gonio_num::Vec3;
@@ -33,10 +33,11 @@ pub(super) fn read(
     section.require("kind")?;
     let kind = section.choice("kind", &kinds)?.unwrap_or(Kind::Point);
     section.allow(match kind {
-        Kind::Point => &["kind", "position", "intensity"],
-        Kind::Directional => &["kind", "direction", "irradiance"],
+        Kind::Point => &["kind", "group", "position", "intensity"],
+        Kind::Directional => &["kind", "group", "direction", "irradiance"],
         Kind::Spot => &[
             "kind",
+            "group",
             "position",
             "direction",
             "target",
@@ -60,7 +61,8 @@ pub(super) fn read(
         }
         Err(section.error_at(key, format!("`{key}` gives no direction"), None))
     };
-    builder.light(match kind {
+    let group = group(&section)?;
+    let light = match kind {
         Kind::Point => Light::Point {
             position: vector("position")?,
             intensity: colour("intensity")?,
@@ -98,8 +100,23 @@ pub(super) fn read(
                 cone,
             }
         }
-    });
+    };
+    match group {
+        Some(group) => builder.light_in(light, group),
+        None => builder.light(light),
+    }
     Ok(())
+}
+
+/// `group`: the group of lights that a table's light is in.
+pub(super) fn group<'a>(section: &Section<'a>) -> Result<Option<&'a str>, SceneError> {
+    match section.text("group")? {
+        Some(name) if !group::is_name(name) => {
+            let message = format!("`group` is {name:?}, expected {}", group::NAMES);
+            Err(section.error_at("group", message, None))
+        }
+        other => Ok(other),
+    }
 }
 
 /// The panorama in a file, or what is wrong with it and how to go on.
@@ -137,6 +154,7 @@ pub(super) fn environment(
         "rotate_deg",
         "scale",
         "proxy",
+        "group",
     ];
     let section = Section::new(source, "[environment]", value, &keys)?;
     let layouts = Layout::ALL.map(|layout| (layout.name(), layout));
@@ -186,6 +204,9 @@ pub(super) fn environment(
     }
     if let Some(scale) = section.colour("scale")? {
         made = made.scaled(scale);
+    }
+    if let Some(group) = group(&section)? {
+        builder.environment_group(group);
     }
     builder.environment(made);
     Ok(())

@@ -1,5 +1,6 @@
 //! `[[material]]`: a model, its parameters, its textures, emission and opacity.
 
+use super::light::group;
 use super::section::{Section, Value, number_of};
 use super::source::{Source, did_you_mean};
 use crate::material::{AlphaMode, Channels, NormalMap, Opacity, TextureInput};
@@ -13,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::de::DeValue;
 
-pub(super) const KEYS: [&str; 8] = [
+pub(super) const KEYS: [&str; 9] = [
     "name",
     "model",
     "params",
@@ -22,6 +23,7 @@ pub(super) const KEYS: [&str; 8] = [
     "emission",
     "opacity",
     "double_sided",
+    "group",
 ];
 
 const TEXTURE_KEYS: [&str; 11] = [
@@ -226,6 +228,13 @@ pub(super) fn read(section: &Section, textures: &mut Textures) -> Result<Materia
         });
     }
     emission(section, &mut material, textures)?;
+    if let Some(group) = group(section)? {
+        if !material.emission.is_lit() {
+            let message = "`group` is for lights, and this material has no `emission`";
+            return Err(section.error_at("group", message, None));
+        }
+        material.emission.group = Some(group.into());
+    }
     opacity(section, &mut material, textures)?;
     material.double_sided = section.flag("double_sided")?.unwrap_or(false);
     Ok(material)

@@ -1,5 +1,6 @@
 //! `[[shape]]`: geometry placed in the world.
 
+use super::light::group;
 use super::section::{Section, Value};
 use super::source::{Source, did_you_mean};
 use super::view::refuse;
@@ -10,8 +11,9 @@ use crate::{SceneError, Shape};
 use gonio_num::{Affine3, Vec3};
 use std::path::Path;
 
-const KEYS: [&str; 9] = [
+const KEYS: [&str; 10] = [
     "kind",
+    "group",
     "file",
     "material",
     "instances",
@@ -54,6 +56,8 @@ pub(super) fn read(
     let kind = section.choice("kind", &kinds)?.unwrap_or(Kind::Mesh);
     let material = material(builder, &section, named)?;
     let placements = placements(&section)?;
+    let group = group(&section)?;
+    let first = builder.instance_count();
     if kind == Kind::Gltf {
         let path = file(&section)?;
         let placement = gltf::Placement {
@@ -66,10 +70,12 @@ pub(super) fn read(
             scene: None,
             ..options.clone()
         };
-        let first = builder.instance_count();
         gltf::append(builder, &path, &inner, &placement)
             .map_err(|e| unless_inside(&section, &path, e))?;
         builder.replicate(first, &placements);
+        if let Some(group) = group {
+            builder.group_from(first, group);
+        }
         return Ok(());
     }
     let shape = match kind {
@@ -100,6 +106,9 @@ pub(super) fn read(
     };
     for to_world in placements {
         builder.instance(shape, to_world.to_f32(), material);
+    }
+    if let Some(group) = group {
+        builder.group_from(first, group);
     }
     Ok(())
 }

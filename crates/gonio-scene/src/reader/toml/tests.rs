@@ -201,6 +201,18 @@ fn wrong_values_are_shown() {
         ),
         ("[camera]\neye = [0, 0, 0]\n", "has no `target`"),
         (
+            "[environment]\nuniform = 1\ngroup = \"a.b\"\n",
+            "`group` is \"a.b\", expected a name of letters, digits, - and _",
+        ),
+        (
+            "[environment]\nuniform = 1\ngroup = 3\n",
+            "a text in quotes",
+        ),
+        (
+            "[[material]]\nname = \"a\"\ngroup = \"key\"\n",
+            "`group` is for lights, and this material has no `emission`",
+        ),
+        (
             "[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 1]\nfov_deg = 180\n",
             "from 0.01 to 179",
         ),
@@ -285,6 +297,66 @@ fn wrong_values_are_shown() {
         let (message, _) = refused(text);
         assert!(message.contains(says), "{says}: {message}");
     }
+}
+
+/// Lights by their own group, surfaces by the material's unless the shape has one; what is in none is in `default`.
+#[test]
+fn groups_of_lights_are_read() {
+    let scene = load(
+        r#"
+[environment]
+uniform = 1
+group = "sky"
+[[material]]
+name = "lamp"
+emission = 5
+group = "practical"
+[[shape]]
+kind = "sphere"
+material = "lamp"
+[[shape]]
+kind = "sphere"
+material = "lamp"
+group = "window"
+instances = [{ translate = [2, 0, 0] }, { translate = [4, 0, 0] }]
+[[shape]]
+kind = "sphere"
+material = "lamp"
+translate = [6, 0, 0]
+[[light]]
+kind = "point"
+position = [0, 3, 0]
+intensity = 1
+[[light]]
+kind = "directional"
+direction = [0, -1, 0]
+irradiance = 1
+group = "key"
+"#,
+    )
+    .unwrap();
+    let lights = &scene.lights;
+    assert_eq!(
+        lights.groups(),
+        ["default", "key", "practical", "window", "sky"]
+    );
+    let of: Vec<u32> = (0..7).map_while(|light| lights.group(light)).collect();
+    assert_eq!(of, [0, 1, 2, 3, 3, 2, 4]);
+    assert_eq!(
+        (lights.group(7), lights.environment_index()),
+        (None, Some(6))
+    );
+    // Another environment takes the place of the one before.
+    let mut scene = scene;
+    let other = gonio_env::Environment::uniform([2.0; 3]);
+    scene.set_environment(Some(other));
+    assert_eq!(scene.lights.group(6), Some(4));
+    assert_eq!(scene.lights.groups()[4], "sky");
+    scene.set_environment(None);
+    assert_eq!(scene.lights.groups().len(), 4);
+    let dark = load(&format!("{BALL}group = \"key\"\n")).unwrap();
+    let says = |w: &String| w.contains("the group of lights `key` doesn't shine");
+    assert!(dark.warnings.iter().any(says), "{:?}", dark.warnings);
 }
 
 #[test]

@@ -85,7 +85,7 @@ impl<'a> Live<'a> {
         }
         let image = film.image();
         if let Some(path) = self.preview
-            && let Err(e) = image.write_png(path, self.how.tonemap, self.how.exposure)
+            && let Err(e) = image.write_png(path, self.how.tone.tonemap, self.how.tone.exposure)
         {
             warn(&format!("the preview ends: {}", Failure::from(e).message()));
             self.preview = None;

@@ -4,6 +4,7 @@ use crate::cli::destination;
 use crate::cli::failure::Failure;
 use crate::cli::parse;
 use crate::cli::summary::rejected_in_words;
+use gonio_image::Image;
 use gonio_image::tonemap::ToneMap;
 use gonio_render::part::{self, Exposure, Label};
 use std::path::{Path, PathBuf};
@@ -11,28 +12,43 @@ use std::path::{Path, PathBuf};
 /// How pictures are written.
 #[derive(clap::Args)]
 pub(in crate::cli) struct PictureArguments {
+    #[command(flatten)]
+    pub tone: ToneArguments,
+    /// Write the time spent into EXR files: two pictures of the same samples are then no longer the same file
+    #[arg(long)]
+    pub write_time: bool,
+}
+
+/// How light becomes the colours of a screen.
+#[derive(clap::Args)]
+pub(in crate::cli) struct ToneArguments {
     /// Exposure of PNG files, in stops
     #[arg(long, value_name = "EV", default_value = "0", value_parser = parse::finite, allow_hyphen_values = true)]
     pub exposure: f32,
     /// Tone map of PNG files
     #[arg(long, value_name = "NAME", default_value = "pbr-neutral", value_parser = parse::tone_map())]
     pub tonemap: ToneMap,
-    /// Write the time spent into EXR files: two pictures of the same samples are then no longer the same file
-    #[arg(long)]
-    pub write_time: bool,
+}
+
+impl ToneArguments {
+    /// Writes a picture in the format of the name's extension, but for EXR.
+    pub fn write(&self, image: &Image, path: &Path) -> Result<(), Failure> {
+        match destination::extension(path).as_str() {
+            "png" => image.write_png(path, self.tonemap, self.exposure)?,
+            _ => image.write(path)?,
+        }
+        Ok(())
+    }
 }
 
 /// The attribute with the names of the groups of lights: a list in JSON, whose layers add up to the picture.
 pub(in crate::cli) const GROUPS: &str = "gonio.groups";
 
-/// Names by their numbers from 1, as JSON: those that the layer of materials has.
-fn numbered(names: &[String]) -> String {
-    // Written out, since a map would be sorted by the texts of the numbers.
-    let each = names.iter().enumerate();
-    let pairs: Vec<String> = each
-        .map(|(i, name)| format!("\"{}\":{}", i + 1, serde_json::json!(name)))
-        .collect();
-    format!("{{{}}}", pairs.join(","))
+/// The attribute with the names of the materials: a list in JSON; the layer of materials counts them from 1.
+pub(in crate::cli) const MATERIALS: &str = "gonio.materials";
+
+fn listed(names: &[String]) -> String {
+    serde_json::json!(names).to_string()
 }
 
 /// The extension of a part.
@@ -70,8 +86,7 @@ fn write(
         "exr" => film
             .layers(&label.names, metadata(label, exposure, how.write_time))
             .write_exr(path)?,
-        "png" => film.image().write_png(path, how.tonemap, how.exposure)?,
-        _ => film.image().write(path)?,
+        _ => how.tone.write(&film.image(), path)?,
     }
     Ok(())
 }
@@ -128,11 +143,10 @@ fn metadata(label: &Label, exposure: &Exposure, with_time: bool) -> Vec<(String,
         all.push(("gonio.direct", words.into()));
     }
     if kept.material {
-        all.push(("gonio.materials", numbered(&label.names.materials)));
+        all.push((MATERIALS, listed(&label.names.materials)));
     }
     if kept.groups > 0 {
-        let names = &label.names.groups;
-        all.push((GROUPS, serde_json::json!(names).to_string()));
+        all.push((GROUPS, listed(&label.names.groups)));
     }
     if with_time {
         all.push((

@@ -1,0 +1,208 @@
+//! `gonio render --layers`, and what files say of their layers.
+
+use crate::support::{BALL, Place, tiny};
+use gonio::image::Layers;
+
+/// Three lights in three groups, a material that no group has, and one whose samples are negative.
+const ROOM: &str = r#"
+[camera]
+eye = [0, 2, 6]
+target = [0, 0.3, 0]
+
+[environment]
+uniform = [0.2, 0.3, 0.4]
+group = "sky"
+
+[[material]]
+name = "grey"
+model = "lambertian:0.5"
+
+[[material]]
+name = "bulb"
+model = "lambertian:0"
+emission = [30, 20, 10]
+group = "practical"
+
+[[shape]]
+kind = "sphere"
+material = "grey"
+
+[[shape]]
+kind = "rectangle"
+material = "grey"
+rotate_deg = [-90, 0, 0]
+translate = [0, -1, 0]
+scale = 8
+
+[[shape]]
+kind = "sphere"
+material = "bulb"
+scale = 0.3
+translate = [1.5, 0.5, 1]
+
+[[light]]
+kind = "point"
+position = [-2, 3, 2]
+intensity = [20, 20, 18]
+group = "key"
+"#;
+
+#[test]
+fn layers_are_those_that_are_asked_for() {
+    let place = Place::new();
+    let scene = place.write("room.toml", ROOM);
+    let channels = |layers: &[&str]| {
+        place.good(&tiny(&[&[&*scene, "-o", "a.exr"], layers].concat()));
+        let layers = Layers::read_exr(&place.path().join("a.exr")).unwrap();
+        let names = layers.channels.into_iter().map(|c| c.name);
+        names.filter(|n| n.contains('.')).collect::<Vec<_>>()
+    };
+    let usual = channels(&[]);
+    let of = |layer: &str, components: &str| -> Vec<String> {
+        components.chars().map(|c| format!("{layer}.{c}")).collect()
+    };
+    let mut expected = [
+        of("albedo", "BGR"),
+        of("depth", "Z"),
+        of("normal", "XYZ"),
+        vec!["samples.count".into()],
+        of("variance", "BGR"),
+    ]
+    .concat();
+    assert_eq!(usual, expected);
+    assert_eq!(channels(&["--layers", "groups"]).len(), usual.len() + 3 * 3);
+    expected.extend(of("direct", "BGR"));
+    expected.extend(of("position", "XYZ"));
+    expected.sort();
+    assert_eq!(
+        channels(&["--layers", "direct", "--layers", "position"]),
+        expected
+    );
+    let all = channels(&["--layers", "all"]);
+    assert_eq!(
+        channels(&["--layers", "position,material,direct,indirect,groups"]),
+        all
+    );
+    let info = place.json(&["info", "a.exr", "--json"]);
+    assert_eq!(
+        info["gonio.groups"],
+        serde_json::json!(["key", "practical", "sky"])
+    );
+    assert_eq!(info["gonio.materials"], serde_json::json!(["grey", "bulb"]));
+    assert_eq!(info["gonio.rejectedInLayers"], "0");
+    let words = place.good(&["info", "a.exr"]).out;
+    for line in [
+        "gonio.groups",
+        "key, practical, sky",
+        "group.key.BGR",
+        "grey, bulb",
+    ] {
+        assert!(words.contains(line), "{words}");
+    }
+}
+
+#[test]
+fn layers_that_do_not_exist_are_refused() {
+    let place = Place::new();
+    let scene = place.write("room.toml", ROOM);
+    let help = |layer: &str| {
+        place
+            .bad(&tiny(&[&scene, "--layers", layer]), 2, &["--layers"])
+            .err
+    };
+    assert!(help("drect").contains("did you mean 'direct'"));
+    assert!(help("group").contains("groups"));
+    help("");
+    help("direct,,indirect");
+}
+
+/// A scene without groups has one layer for all of its light, and is told so.
+#[test]
+fn a_scene_without_groups_is_told_so() {
+    let place = Place::new();
+    let scene = place.write("ball.toml", BALL);
+    let said = place.good(&tiny(&[&scene, "--layers", "groups", "-o", "a.exr"]));
+    assert!(
+        said.err.contains("no light of the scene is in a group"),
+        "{said:?}"
+    );
+    let layers = Layers::read_exr(&place.path().join("a.exr")).unwrap();
+    assert_eq!(layers.rgb("group.default"), layers.rgb(""));
+}
+
+/// Parts have the layers, the names of materials and groups, and make the file that one machine makes.
+#[test]
+fn merged_parts_have_the_layers_of_the_whole() {
+    let place = Place::new();
+    let scene = place.write("room.toml", ROOM);
+    let render = |more: &[&str]| {
+        let arguments = [
+            "render", &scene, "--size", "16x12", "--spp", "5", "--layers", "all",
+        ];
+        place.good(&[&arguments[..], more].concat())
+    };
+    render(&["-o", "whole.exr"]);
+    render(&["--samples", "0:2", "-o", "a.gonio"]);
+    render(&["--samples", "2:5", "-o", "b.gonio", "--threads", "1"]);
+    place.good(&["merge", "b.gonio", "a.gonio", "-o", "merged.exr"]);
+    assert!(place.read("merged.exr") == place.read("whole.exr"));
+    let info = place.json(&["info", "a.gonio", "--json"]);
+    assert_eq!(
+        info["layers"],
+        "position, material, direct, indirect, groups"
+    );
+    assert_eq!(
+        info["groups"],
+        serde_json::json!(["key", "practical", "sky"])
+    );
+    assert_eq!(info["materials"], serde_json::json!(["grey", "bulb"]));
+    // Parts with other layers are parts of another picture.
+    let arguments = [
+        "render",
+        &scene,
+        "--size",
+        "16x12",
+        "--spp",
+        "5",
+        "--samples",
+        "0:2",
+    ];
+    place.good(&[&arguments[..], &["-o", "c.gonio"]].concat());
+    let said = place.bad(
+        &["merge", "c.gonio", "b.gonio", "-o", "d.exr"],
+        3,
+        &["b.gonio", "other layers", "expected none"],
+    );
+    assert!(said.err.contains("c.gonio"), "{said:?}");
+}
+
+/// Where the scene isn't at hand, faulty samples still have the name of their material.
+#[test]
+fn faulty_samples_have_names_after_merging() {
+    let place = Place::new();
+    place.write(
+        "bad.wgsl",
+        "fn eval(wi: vec3f, wo: vec3f) -> vec3f { return vec3f(-1.0); }",
+    );
+    let scene = place.write("ball.toml", BALL);
+    place.good(&[
+        "render",
+        &scene,
+        "--size",
+        "16x12",
+        "--spp",
+        "1",
+        "--material",
+        "bad.wgsl",
+        "--part",
+        "0/1",
+        "-o",
+        "a.gonio",
+    ]);
+    let said = place.good(&["merge", "a.gonio", "-o", "a.exr"]);
+    assert!(said.err.contains("material 'grey'"), "{said:?}");
+    for file in ["a.gonio", "a.exr"] {
+        let words = place.good(&["info", file]).out;
+        assert!(words.contains("material 'grey'"), "{words}");
+    }
+}
