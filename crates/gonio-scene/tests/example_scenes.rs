@@ -37,7 +37,13 @@ fn every_example_loads() {
         );
         found.push(name);
     }
-    for name in ["cornell.toml", "furnace.toml", "glass.toml", "spheres.toml"] {
+    for name in [
+        "cornell.toml",
+        "furnace.toml",
+        "glass.toml",
+        "groups.toml",
+        "spheres.toml",
+    ] {
         assert!(found.iter().any(|f| f == name), "{name} is missing");
     }
 }

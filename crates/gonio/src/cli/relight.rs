@@ -203,8 +203,9 @@ fn missing_light(path: &Path, layers: &Layers, groups: &[Group]) -> Option<Strin
     };
     let whole = total(&layers.rgb("")?);
     let sum: f64 = groups.iter().map(|g| total(&g.light)).sum();
-    let differs = !((sum - whole).abs() <= LOST * whole);
-    differs.then(|| {
+    // A picture with NaN has another sum than any.
+    let agrees = (sum - whole).abs() <= LOST * whole;
+    (!agrees).then(|| {
         format!(
             "{}: the groups add up to {:.2} % of the picture's light; what is mixed is that of the groups",
             path.display(),

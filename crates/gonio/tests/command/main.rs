@@ -23,5 +23,6 @@ mod prefilter;
 mod relight;
 mod render;
 mod scenes;
+mod schema;
 mod support;
 mod writing;
