@@ -25,7 +25,13 @@ fn fault(value: &Value, kind: Kind, at: &str) -> Option<String> {
     let expected = match kind {
         Text if value.is_string() => return None,
         Whole if value.is_u64() => return None,
-        Texts if value.as_object().is_some_and(|o| o.values().all(Value::is_string)) => return None,
+        Texts
+            if value
+                .as_object()
+                .is_some_and(|o| o.values().all(Value::is_string)) =>
+        {
+            return None;
+        }
         Each(kind) => {
             if let Some(all) = value.as_array() {
                 let mut faults = all.iter().enumerate();
@@ -39,12 +45,12 @@ fn fault(value: &Value, kind: Kind, at: &str) -> Option<String> {
                 if let Some(key) = unknown {
                     return Some(format!("{at} has {key}, which nothing is called"));
                 }
-                return fields.iter().find_map(|&(name, kind, required)| {
-                    match object.get(name) {
+                return fields
+                    .iter()
+                    .find_map(|&(name, kind, required)| match object.get(name) {
                         Some(value) => fault(value, kind, &format!("{at}.{name}")),
                         None => required.then(|| format!("{at} has no {name}")),
-                    }
-                });
+                    });
             }
             "a table"
         }
@@ -61,8 +67,16 @@ const CONTAINER: Kind = Table(&[
     ("command", Each(&Text), false),
     ("args", Each(&Text), false),
     ("workingDir", Text, false),
-    ("resources", Table(&[("requests", Texts, false), ("limits", Texts, false)]), false),
-    ("volumeMounts", Each(&Table(&[("name", Text, true), ("mountPath", Text, true)])), false),
+    (
+        "resources",
+        Table(&[("requests", Texts, false), ("limits", Texts, false)]),
+        false,
+    ),
+    (
+        "volumeMounts",
+        Each(&Table(&[("name", Text, true), ("mountPath", Text, true)])),
+        false,
+    ),
 ]);
 
 const POD: Kind = Table(&[
@@ -73,7 +87,11 @@ const POD: Kind = Table(&[
         "volumes",
         Each(&Table(&[
             ("name", Text, true),
-            ("persistentVolumeClaim", Table(&[("claimName", Text, true)]), false),
+            (
+                "persistentVolumeClaim",
+                Table(&[("claimName", Text, true)]),
+                false,
+            ),
         ])),
         false,
     ),
@@ -90,7 +108,11 @@ const FAILURE_RULE: Kind = Table(&[
         ]),
         false,
     ),
-    ("onPodConditions", Each(&Table(&[("type", Text, true), ("status", Text, true)])), false),
+    (
+        "onPodConditions",
+        Each(&Table(&[("type", Text, true), ("status", Text, true)])),
+        false,
+    ),
 ]);
 
 const JOB: Kind = Table(&[
@@ -105,7 +127,11 @@ const JOB: Kind = Table(&[
             ("parallelism", Whole, false),
             ("backoffLimit", Whole, false),
             ("backoffLimitPerIndex", Whole, false),
-            ("podFailurePolicy", Table(&[("rules", Each(&FAILURE_RULE), true)]), false),
+            (
+                "podFailurePolicy",
+                Table(&[("rules", Each(&FAILURE_RULE), true)]),
+                false,
+            ),
             ("template", Table(&[("spec", POD, true)]), true),
         ]),
         true,
@@ -147,33 +173,66 @@ fn broken_rule(job: &Value) -> Option<&'static str> {
     };
     let one_of = |value: &Value, words: &[&str]| words.contains(&text(value).as_str());
     let volumes: Vec<Value> = pod["volumes"].as_array().cloned().unwrap_or_default();
-    let mounts = containers.iter().flat_map(|c| c["volumeMounts"].as_array().into_iter().flatten());
+    let mounts = containers
+        .iter()
+        .flat_map(|c| c["volumeMounts"].as_array().into_iter().flatten());
     let mounted = |mount: &Value| volumes.iter().any(|v| v["name"] == mount["name"]);
     let checks = [
-        (job["apiVersion"] == "batch/v1" && job["kind"] == "Job", "a Job of batch/v1"),
-        (label && !name.starts_with(ends) && !name.ends_with(ends), "a name that is a DNS label"),
-        (!indexed || spec["completions"].is_u64(), "completions, where it is indexed"),
+        (
+            job["apiVersion"] == "batch/v1" && job["kind"] == "Job",
+            "a Job of batch/v1",
+        ),
+        (
+            label && !name.starts_with(ends) && !name.ends_with(ends),
+            "a name that is a DNS label",
+        ),
+        (
+            !indexed || spec["completions"].is_u64(),
+            "completions, where it is indexed",
+        ),
         (
             !indexed || spec["parallelism"].as_u64() <= spec["completions"].as_u64(),
             "no more pods at once than completions",
         ),
-        (spec["completions"].as_u64() <= Some(100_000), "at most 10⁵ completions"),
-        (spec["backoffLimitPerIndex"].is_null() || indexed, "a limit of each index, where it is indexed"),
-        (policy.is_null() || pod["restartPolicy"] == "Never", "no restarts beside a policy of failures"),
-        (one_of(&pod["restartPolicy"], &["Never", "OnFailure"]), "a policy of restarts that jobs have"),
+        (
+            spec["completions"].as_u64() <= Some(100_000),
+            "at most 10⁵ completions",
+        ),
+        (
+            spec["backoffLimitPerIndex"].is_null() || indexed,
+            "a limit of each index, where it is indexed",
+        ),
+        (
+            policy.is_null() || pod["restartPolicy"] == "Never",
+            "no restarts beside a policy of failures",
+        ),
+        (
+            one_of(&pod["restartPolicy"], &["Never", "OnFailure"]),
+            "a policy of restarts that jobs have",
+        ),
         (rules.len() <= 20, "at most 20 rules"),
         (
-            rules.iter().all(|r| one_of(&r["action"], &["FailJob", "FailIndex", "Ignore", "Count"])),
+            rules
+                .iter()
+                .all(|r| one_of(&r["action"], &["FailJob", "FailIndex", "Ignore", "Count"])),
             "an action that there is",
         ),
         (
-            rules.iter().all(|r| r["onExitCodes"].is_null() != r["onPodConditions"].is_null()),
+            rules
+                .iter()
+                .all(|r| r["onExitCodes"].is_null() != r["onPodConditions"].is_null()),
             "one condition a rule",
         ),
-        (rules.iter().all(exit_codes_are_good), "exit codes that are sorted, of a container that is there"),
+        (
+            rules.iter().all(exit_codes_are_good),
+            "exit codes that are sorted, of a container that is there",
+        ),
         ({ mounts }.all(mounted), "volumes for all mounts"),
     ];
-    checks.iter().find(|(holds, _)| !holds).map(|(_, rule)| *rule)
+    checks
+        .iter()
+        .find(|(holds, _)| !holds)
+        .map(|(_, rule)| *rule)
 }
 
 fn job(system: &str, file: &str, more: &[&str]) -> String {
@@ -194,7 +253,10 @@ fn jobs_of_kubernetes_are_as_its_api_wants_them() {
     );
     let list: Value = serde_json::from_str(&text).unwrap();
     assert_eq!(fault(&list, LIST, "list"), None);
-    assert_eq!((&list["apiVersion"], &list["kind"]), (&"v1".into(), &"List".into()));
+    assert_eq!(
+        (&list["apiVersion"], &list["kind"]),
+        (&"v1".into(), &"List".into())
+    );
     let jobs = list["items"].as_array().unwrap();
     assert_eq!(jobs.len(), 2);
     for job in jobs {
@@ -211,15 +273,43 @@ fn jobs_of_kubernetes_are_as_its_api_wants_them() {
         let fault = with(pointer, value).unwrap_or_default();
         assert!(fault.contains(says), "{pointer}: {fault}");
     };
-    found("/spec/completions", json!("3"), "job.spec.completions is \"3\", expected a whole number");
+    found(
+        "/spec/completions",
+        json!("3"),
+        "job.spec.completions is \"3\", expected a whole number",
+    );
     found("/spec", json!({"templat": {}}), "job.spec has templat");
-    found("/spec/template/spec", json!({"containers": []}), "has no restartPolicy");
-    found("/spec/completionMode", json!("NonIndexed"), "a limit of each index");
+    found(
+        "/spec/template/spec",
+        json!({"containers": []}),
+        "has no restartPolicy",
+    );
+    found(
+        "/spec/completionMode",
+        json!("NonIndexed"),
+        "a limit of each index",
+    );
     found("/spec/parallelism", json!(4), "no more pods");
-    found("/spec/template/spec/restartPolicy", json!("OnFailure"), "no restarts");
-    found("/spec/template/spec/containers/0/name", json!("other"), "a container that is there");
-    found("/spec/template/spec/volumes/0/name", json!("other"), "volumes");
-    found("/spec/podFailurePolicy/rules/0/onExitCodes/values", json!([3, 2]), "sorted");
+    found(
+        "/spec/template/spec/restartPolicy",
+        json!("OnFailure"),
+        "no restarts",
+    );
+    found(
+        "/spec/template/spec/containers/0/name",
+        json!("other"),
+        "a container that is there",
+    );
+    found(
+        "/spec/template/spec/volumes/0/name",
+        json!("other"),
+        "volumes",
+    );
+    found(
+        "/spec/podFailurePolicy/rules/0/onExitCodes/values",
+        json!([3, 2]),
+        "sorted",
+    );
     found("/metadata/name", json!("My_Job"), "DNS label");
     found("/apiVersion", json!("batch/v1beta1"), "batch/v1");
 }
@@ -233,7 +323,14 @@ const TASK: Kind = Table(&[
     ("deps", Each(&Whole), false),
     ("crash_limit", Whole, false),
     ("time_limit", Text, false),
-    ("request", Each(&Table(&[("resources", Texts, false), ("time_request", Text, false)])), false),
+    (
+        "request",
+        Each(&Table(&[
+            ("resources", Texts, false),
+            ("time_request", Text, false),
+        ])),
+        false,
+    ),
 ]);
 
 const JOB_FILE: Kind = Table(&[
@@ -246,13 +343,23 @@ const JOB_FILE: Kind = Table(&[
 fn broken_task(job: &Value) -> Option<String> {
     let tasks = job["task"].as_array()?;
     let ids: Vec<&Value> = tasks.iter().map(|t| &t["id"]).collect();
-    let twice = ids.iter().enumerate().find(|(i, id)| ids[..*i].contains(id));
+    let twice = ids
+        .iter()
+        .enumerate()
+        .find(|(i, id)| ids[..*i].contains(id));
     if let Some((_, id)) = twice {
         return Some(format!("two tasks are {id}"));
     }
     let deps = |task: &Value| task["deps"].as_array().cloned().unwrap_or_default();
-    let missing = |task: &Value| deps(task).into_iter().find(|d| !ids.contains(&d) || *d == task["id"]);
-    tasks.iter().find_map(missing).map(|d| format!("no other task is {d}"))
+    let missing = |task: &Value| {
+        deps(task)
+            .into_iter()
+            .find(|d| !ids.contains(&d) || *d == task["id"])
+    };
+    tasks
+        .iter()
+        .find_map(missing)
+        .map(|d| format!("no other task is {d}"))
 }
 
 #[test]
@@ -264,7 +371,9 @@ fn jobs_of_hyperqueue_are_as_its_files_have_them() {
     let with = |pointer: &str, value: Value| {
         let mut changed = job.clone();
         *changed.pointer_mut(pointer).unwrap() = value;
-        fault(&changed, JOB_FILE, "job").or(broken_task(&changed)).unwrap_or_default()
+        fault(&changed, JOB_FILE, "job")
+            .or(broken_task(&changed))
+            .unwrap_or_default()
     };
     assert!(with("/task/0/command", json!("gonio render")).contains("expected a list"));
     assert!(with("/task/0", json!({"comand": []})).contains("has comand"));
