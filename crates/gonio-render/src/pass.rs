@@ -330,6 +330,13 @@ mod tests {
             intensity: [4.0; 3],
         };
         scene.light_in(point, "key");
+        // More lights than a node of their tree has children.
+        for k in 0..9 {
+            scene.light(Light::Point {
+                position: Vec3::new(k as f32 - 4.0, 0.3, 1.5),
+                intensity: [0.1; 3],
+            });
+        }
         scene.environment(environment);
         let up = Vec3::new(0.0, 1.0, 0.0);
         let eye = Vec3::new(0.0, 2.5, 8.0);

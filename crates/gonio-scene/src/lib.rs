@@ -23,7 +23,7 @@ pub use files::{Files, Told, Watch};
 pub use geometry::{Aabb, AreaSample, Geometry, Instance, Shape, SurfacePoint, Surfaces};
 pub use interior::{Body, Interior};
 pub use light::{
-    Light, LightRef, LightSample, LightSamples, LightTarget, Lights, NO_GROUP, SpotCone,
+    Light, LightRef, LightSample, LightSamples, LightTarget, Lights, NO_GROUP, Receiver, SpotCone,
 };
 pub use material::{Material, Shading, facing_frame};
 pub use mesh::TriangleMesh;

@@ -85,7 +85,7 @@ impl Path {
                     power_heuristic(drawn.pdf, light_density)
                 }
             };
-            let from = vertex.point.p;
+            let from = vertex.receiver();
             current = arrive(
                 scene,
                 &ray,
@@ -100,7 +100,7 @@ impl Path {
                     break;
                 }
                 let (radiance, density) =
-                    (scene.lights).environment_radiance_and_pdf_by(guide, from, drawn.wi);
+                    (scene.lights).environment_radiance_and_pdf_by(guide, from.p, drawn.wi);
                 let arrived = scaled(product(throughput, radiance), weight(density));
                 total = sum(total, arrived);
                 shares.add(scene.lights.environment_index(), bounce + 1, arrived);
@@ -108,7 +108,7 @@ impl Path {
             };
             let radiance = scene.emitted(&next.point, next.wo_world);
             if radiance != [0.0; 3] {
-                let density = scene.lights.pdf_area(from, &next.point, drawn.wi);
+                let density = scene.lights.pdf_area(&from, &next.point, drawn.wi);
                 let arrived = scaled(product(throughput, radiance), weight(density));
                 total = sum(total, arrived);
                 shares.add(light_at(scene, &next.point), bounce + 1, arrived);
@@ -145,8 +145,9 @@ impl Path {
         let choice = stream.next_1d();
         let position = stream.next_2d();
         let lights = &scene.lights;
+        let at = vertex.receiver();
         if let EnvironmentSampling::Product(candidates) = self.environment
-            && let Some((chosen, probability, _)) = lights.choose(choice)
+            && let Some((chosen, probability)) = lights.choose(&at, choice)
             && let Light::Environment(environment) = chosen.light()
         {
             let direct = vertex.reflect_product(
@@ -159,7 +160,7 @@ impl Path {
             );
             return (Some(chosen.index()), scaled(direct, 1.0 / probability));
         }
-        let Some(light) = lights.sample_by(guide, &vertex.point, choice, position) else {
+        let Some(light) = lights.sample_by(guide, &at, choice, position) else {
             return (None, [0.0; 3]);
         };
         let reflected = vertex.reflect_light(scene, &light, interior, counts, |density| {

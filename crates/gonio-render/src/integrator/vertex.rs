@@ -4,7 +4,9 @@ use super::{RayCounts, dimension, product, scaled};
 use gonio_brdf::{Brdf, Model, Sample};
 use gonio_num::{Frame, Vec3};
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{Interior, LightSample, LightTarget, Ray, Scene, Shading, SurfacePoint};
+use gonio_scene::{
+    Interior, LightSample, LightTarget, Ray, Receiver, Scene, Shading, SurfacePoint,
+};
 use std::borrow::Cow;
 
 /// A point on a surface with its reflection function, seen from one direction.
@@ -164,6 +166,20 @@ impl Vertex<'_> {
             -self.frame.n
         } else {
             self.frame.n
+        }
+    }
+
+    /// The point as one that lights are chosen for.
+    #[inline(always)]
+    pub(super) fn receiver(&self) -> Receiver {
+        Receiver {
+            p: self.point.p,
+            error: self.point.error,
+            normal: if self.transmits {
+                Vec3::zero()
+            } else {
+                self.facing_normal()
+            },
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::placed::Placed;
 use super::surface::Local;
-use super::{Geometry, Hit, Shape, SurfacePoint};
+use super::{Aabb, Geometry, Hit, Shape, SurfacePoint};
 use crate::mesh::TriangleMesh;
 use gonio_num::{Real, Vec3};
 use std::f64::consts::{FRAC_PI_4, PI};
@@ -218,6 +218,64 @@ impl Geometry {
             v: 0.0,
         };
         Some((placed.to_surface(&local, &hit), pdf as f32))
+    }
+
+    /// A point of one triangle of a mesh, uniform by area, and its density over area \[1/m²\]; that isn't finite where the triangle has no area.
+    ///
+    /// # Panics
+    /// If there is no such instance or triangle.
+    pub(crate) fn sample_triangle(
+        &self,
+        instance: u32,
+        triangle: u32,
+        u: [f32; 2],
+    ) -> (SurfacePoint, f32) {
+        let (placed, mesh) = (&self.placed[instance as usize], self.mesh_of(instance));
+        let (a, b) = uniform_triangle(u.map(f64::from));
+        let local = Local::triangle(mesh, triangle as usize, a as f32, b as f32);
+        let hit = Hit {
+            t: 0.0,
+            instance,
+            primitive: triangle,
+            u: 0.0,
+            v: 0.0,
+        };
+        let pdf = 1.0 / triangle_area(placed, mesh, triangle as usize);
+        (placed.to_surface(&local, &hit), pdf as f32)
+    }
+
+    /// Area of a triangle of a mesh in the world \[m²\].
+    ///
+    /// # Panics
+    /// If there is no such instance or triangle.
+    pub(crate) fn triangle_area(&self, instance: u32, triangle: u32) -> f64 {
+        triangle_area(
+            &self.placed[instance as usize],
+            self.mesh_of(instance),
+            triangle as usize,
+        )
+    }
+
+    /// The corners of a triangle of a mesh in the world.
+    ///
+    /// # Panics
+    /// If there is no such instance or triangle.
+    pub(crate) fn triangle_corners(&self, instance: u32, triangle: u32) -> [Vec3<f32>; 3] {
+        let m = &self.placed[instance as usize].to_world;
+        let corners = self.mesh_of(instance).corners(triangle as usize);
+        corners.map(|c| m.transform_point(c.to_f64()).to_f32())
+    }
+
+    /// The box around an instance.
+    pub(crate) fn instance_bounds(&self, instance: u32) -> Aabb {
+        self.placed[instance as usize].bounds
+    }
+
+    fn mesh_of(&self, instance: u32) -> &TriangleMesh {
+        match self.shape_of(instance) {
+            Shape::Mesh(mesh) => mesh,
+            _ => panic!("instance {instance} is no mesh"),
+        }
     }
 
     /// What is known of the surface at a point `p` of a sphere, rectangle or disk.

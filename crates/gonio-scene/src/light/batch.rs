@@ -3,8 +3,9 @@
 // Loops over an index are what vectorises.
 #![allow(clippy::needless_range_loop)]
 
+use super::choice::Chosen as Drawn;
 use super::emitter::{Form, Rectangle, Sphere, Toward};
-use super::{Light, LightTarget, Lights};
+use super::{Light, LightTarget, Lights, WHOLE};
 use crate::Surfaces;
 use gonio_env::{EnvSamples, Guide};
 use gonio_num::dispatch::{Kernel, dispatch};
@@ -28,6 +29,7 @@ pub struct LightSamples {
     pub delta: Vec<bool>,
     /// Index of the light that was chosen.
     pub light: Vec<u32>,
+    drawn: Vec<Drawn>,
     /// Points by how their light is sampled on lanes.
     chosen: [Vec<Chosen>; 3],
     from: Vectors,
@@ -80,6 +82,7 @@ impl LightSamples {
 impl Lights {
     /// [`Lights::sample_by`] from many points, the same to the bit.
     ///
+    /// - `normals`: as [`Receiver::normal`](super::Receiver::normal); may be empty unless [`Lights::ask_for_normals`]
     /// - `choice`, `u`: one number a point, uniform in \[0, 1), independent
     ///
     /// # Panics
@@ -88,18 +91,21 @@ impl Lights {
         &self,
         guide: Guide,
         from: &Surfaces,
+        normals: &Vectors,
         choice: &[f32],
         u: [&[f32]; 2],
         samples: &mut LightSamples,
     ) {
         let count = from.p.len();
         samples.resize(count);
-        for (i, choice) in choice[..count].iter().enumerate() {
-            let Some((light, probability, rest)) = self.choose(*choice) else {
+        let mut drawn = std::mem::take(&mut samples.drawn);
+        self.choice.choose_many(from, normals, choice, &mut drawn);
+        for (i, drawn) in drawn.iter().enumerate() {
+            let (light, probability) = (drawn.light, drawn.probability);
+            if probability <= 0.0 {
                 samples.pdf[i] = 0.0;
                 continue;
-            };
-            let light = light.index;
+            }
             samples.light[i] = light;
             let kind = match (&self.lights[light as usize], &self.emitters[light as usize]) {
                 (Light::Environment(_), _) => Some(ENVIRONMENT),
@@ -120,15 +126,16 @@ impl Lights {
                 let place = (from.p.get(i), from.error[i]);
                 self.sample_singly(
                     guide,
-                    light,
+                    (light, drawn.primitive),
                     place,
-                    (rest, probability),
+                    (drawn.rest, probability),
                     [u[0][i], u[1][i]],
                     i,
                     samples,
                 );
             }
         }
+        samples.drawn = drawn;
         self.sample_environment(guide, from, u, samples);
         let spheres = std::mem::take(&mut samples.chosen[SPHERE]);
         self.sample_surfaces::<OfSphere>(guide, &spheres, from, u, samples);
@@ -145,14 +152,14 @@ impl Lights {
     fn sample_singly(
         &self,
         guide: Guide,
-        light: u32,
+        which: (u32, u32),
         from: (Vec3<f32>, f32),
         (rest, probability): (f32, f32),
         u: [f32; 2],
         i: usize,
         samples: &mut LightSamples,
     ) {
-        let Some(found) = self.sample_one(guide, light, from, rest, u) else {
+        let Some(found) = self.sample_one(guide, which, from, rest, u) else {
             samples.pdf[i] = 0.0;
             return;
         };
@@ -226,7 +233,8 @@ impl Lights {
                 let place = (from.p.get(i), from.error[i]);
                 // The number that chose the light has no part in a sphere.
                 let rest = (0.0, c.probability);
-                self.sample_singly(guide, c.light, place, rest, [u[0][i], u[1][i]], i, samples);
+                let which = (c.light, WHOLE);
+                self.sample_singly(guide, which, place, rest, [u[0][i], u[1][i]], i, samples);
             }
         }
     }

@@ -4,6 +4,7 @@
 //! - A rectangle whose edges stay perpendicular: uniform over its solid angle, pdf = 1/Ω (Ureña, Fajardo and King 2013).
 //! - Anything else: uniform over its area, pdf = r² / (A |cos θl|).
 
+use super::WHOLE;
 use crate::double::Double;
 use crate::material::{Emission, Opacity};
 use crate::{Geometry, Instance, Material, Shape, SurfacePoint};
@@ -201,6 +202,14 @@ impl Emitter {
         }
     }
 
+    /// The radius, of a sphere that is one.
+    pub fn radius(&self) -> Option<f32> {
+        match &self.form {
+            Form::Sphere(sphere) => Some(sphere.radius as f32),
+            _ => None,
+        }
+    }
+
     /// The radiance of the front, where it is the same all over the surface, and whether the back shines too.
     pub fn even_radiance(&self) -> Option<([f32; 3], bool)> {
         let even = self.emission.is_even() && self.opacity.is_opaque();
@@ -212,11 +221,13 @@ impl Emitter {
     /// The emitter itself may lie in between: a shadow ray tells.
     ///
     /// - `from`: the point and the bound on its error, as [`SurfacePoint`] has them
+    /// - `primitive`: the triangle that the point is to be on, or [`WHOLE`]
     #[inline]
     pub fn sample(
         &self,
         geometry: &Geometry,
         (from, error): (Vec3<f32>, f32),
+        primitive: u32,
         u_select: f32,
         u: [f32; 2],
     ) -> Option<Seen> {
@@ -241,7 +252,11 @@ impl Emitter {
                 pdf: toward.pdf,
             });
         }
-        let (point, pdf_area) = geometry.sample_surface(self.instance, u, u_select)?;
+        let (point, pdf_area) = if primitive == WHOLE {
+            geometry.sample_surface(self.instance, u, u_select)?
+        } else {
+            geometry.sample_triangle(self.instance, primitive, u)
+        };
         let to = point.p.to_f64() - eye;
         let r2 = to.length_squared();
         let wi = to / r2.sqrt();
@@ -272,7 +287,15 @@ impl Emitter {
     }
 
     /// The density \[sr⁻¹] with which [`Emitter::sample`] chooses the direction from `from` to `hit`, a point of the emitter.
-    pub fn pdf(&self, geometry: &Geometry, from: Vec3<f32>, hit: &SurfacePoint) -> f32 {
+    ///
+    /// - `whole`: whether the whole of it was to choose from, not the triangle that `hit` is on
+    pub fn pdf(
+        &self,
+        geometry: &Geometry,
+        from: Vec3<f32>,
+        hit: &SurfacePoint,
+        whole: bool,
+    ) -> f32 {
         let eye = from.to_f64();
         match &self.form {
             Form::Sphere(sphere) => {
@@ -294,7 +317,12 @@ impl Emitter {
         let to = hit.p.to_f64() - eye;
         let r2 = to.length_squared();
         let cos = (to / r2.sqrt()).dot(hit.ng.to_f64()).abs();
-        let pdf = f64::from(geometry.pdf_area(hit)) * r2 / cos;
+        let pdf_area = if whole {
+            geometry.pdf_area(hit)
+        } else {
+            (1.0 / geometry.triangle_area(hit.instance, hit.primitive)) as f32
+        };
+        let pdf = f64::from(pdf_area) * r2 / cos;
         if cos > 0.0 && pdf.is_finite() {
             pdf as f32
         } else {

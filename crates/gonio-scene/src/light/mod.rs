@@ -5,16 +5,19 @@
 //! [`Lights::sample`] chooses one and a direction for the integral, with the exact density per solid angle.
 
 mod batch;
+mod choice;
 mod emitter;
 pub(crate) mod group;
 mod punctual;
 mod select;
+mod tree;
 
 pub use batch::LightSamples;
 pub use group::NO_GROUP;
 pub use punctual::SpotCone;
 pub use select::{LightRef, Lights};
 
+use crate::SurfacePoint;
 use gonio_env::Environment;
 use gonio_num::Vec3;
 
@@ -68,6 +71,32 @@ impl Light {
         )
     }
 }
+
+/// A point that light is looked for at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Receiver {
+    /// Where.
+    pub p: Vec3<f32>,
+    /// Bound on the error of `p`, as [`SurfacePoint::error`].
+    pub error: f32,
+    /// Of the side from which light counts, unit; zero where it counts from all directions. It has a part in which of many lights is chosen, and
+    /// in nothing else: light from the other side may still be found.
+    pub normal: Vec3<f32>,
+}
+
+impl Receiver {
+    /// A point that light counts at from all directions.
+    pub fn all_around(point: &SurfacePoint) -> Self {
+        Self {
+            p: point.p,
+            error: point.error,
+            normal: Vec3::new(0.0, 0.0, 0.0),
+        }
+    }
+}
+
+/// All of a light, where a triangle might be named.
+const WHOLE: u32 = u32::MAX;
 
 /// Where a shadow ray towards a light ends.
 #[derive(Debug, Clone, Copy, PartialEq)]

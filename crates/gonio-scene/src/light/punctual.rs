@@ -25,6 +25,11 @@ impl SpotCone {
         })
     }
 
+    /// Cosine of the outer half angle, in \[0, 1].
+    pub(super) fn cos_outer(&self) -> f32 {
+        self.cos_outer
+    }
+
     /// The factor on the intensity at an angle to the axis of this cosine, in \[0, 1].
     pub fn falloff(&self, cos_theta: f32) -> f32 {
         if cos_theta >= self.cos_inner {

@@ -1,31 +1,26 @@
 //! [`Lights`], all lights of a scene, and the choice among them.
 
+use super::choice::Choice;
 use super::emitter::Emitter;
 use super::group::{Grouped, LightGroups};
 use super::punctual::illuminate;
-use super::{Light, LightSample, LightTarget, luminance};
+use super::{Light, LightSample, LightTarget, Receiver, WHOLE};
 use crate::{Geometry, Material, SurfacePoint};
 use gonio_env::{Environment, Guide};
 use gonio_num::Vec3;
-use gonio_radiometry::warp::Discrete;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// All lights of a scene.
 ///
-/// One light is chosen with the probability pᵢ = ½ Φᵢ/ΣΦ + ½ 1/n, where Φᵢ is the power that it sends into the scene. Power
-/// alone would starve a small lamp beside the subject of a scene under a large sky; the uniform half bounds the variance of any
-/// light at twice what sampling by power, and at twice what sampling evenly, would give.
-///
-/// Power of a light that is infinitely far away is what passes through the bounding sphere of the scene, of radius R:
-/// π R² E for parallel light, π R² ∫L dω for an environment.
+/// One is chosen for a point: several that have a place by a tree of bounds on what they may send to it, the others with the same
+/// probabilities everywhere, half by their power and half evenly.
 #[derive(Debug)]
 pub struct Lights {
     pub(super) lights: Vec<Light>,
     /// One for each light that is a surface.
     pub(super) emitters: Vec<Option<Emitter>>,
-    /// None where there is nothing to choose from.
-    choice: Option<Discrete>,
+    pub(super) choice: Choice,
     environment: Option<u32>,
     geometry: Arc<Geometry>,
     /// As the scene says it, for another environment.
@@ -83,8 +78,7 @@ impl Lights {
             group_of.push(given_groups.environment.as_deref());
             lights.len() as u32 - 1
         });
-        let powers: Vec<f64> = lights.iter().map(|light| power(light, &geometry)).collect();
-        let choice = Discrete::new(&probabilities(&powers)).ok();
+        let choice = Choice::new(&geometry, &lights, &emitters);
         let groups = Grouped::new(group_of.into_iter());
         Self {
             lights,
@@ -151,9 +145,8 @@ impl Lights {
     ///
     /// - `u_select`, `u`: uniform in \[0, 1), independent
     ///
-    /// Nothing if there is no light, or if none comes from the direction chosen; the estimate is then zero. What `from` is made
-    /// of and which way it faces has no influence.
-    pub fn sample(&self, from: &SurfacePoint, u_select: f32, u: [f32; 2]) -> Option<LightSample> {
+    /// Nothing if there is no light, or if none comes from the direction chosen; the estimate is then zero.
+    pub fn sample(&self, from: &Receiver, u_select: f32, u: [f32; 2]) -> Option<LightSample> {
         self.sample_by(Guide::Luminance, from, u_select, u)
     }
 
@@ -162,41 +155,39 @@ impl Lights {
     pub fn sample_by(
         &self,
         guide: Guide,
-        from: &SurfacePoint,
+        from: &Receiver,
         u_select: f32,
         u: [f32; 2],
     ) -> Option<LightSample> {
-        self.sample_at(guide, from.p, from.error, u_select, u)
-    }
-
-    /// As [`Lights::sample_by`], from a point that is known to `error`, [`SurfacePoint::error`].
-    #[inline]
-    pub(super) fn sample_at(
-        &self,
-        guide: Guide,
-        p: Vec3<f32>,
-        error: f32,
-        u_select: f32,
-        u: [f32; 2],
-    ) -> Option<LightSample> {
-        let (light, probability, rest) = self.choose(u_select)?;
-        let mut sample = self.sample_one(guide, light.index, (p, error), rest, u)?;
-        sample.pdf *= probability;
+        let chosen = self.choice.choose(from, u_select)?;
+        let which = (chosen.light, chosen.primitive);
+        let mut sample = self.sample_one(guide, which, (from.p, from.error), chosen.rest, u)?;
+        sample.pdf *= chosen.probability;
         (sample.pdf > 0.0).then_some(sample)
     }
 
-    /// Chooses a light: which, with what probability, and a number uniform in \[0, 1) again. Nothing if there is none that shines.
+    /// Chooses a light: which, and with what probability. Nothing if none shines, or if none may light the point.
     #[inline]
-    pub fn choose(&self, u_select: f32) -> Option<(LightRef<'_>, f32, f32)> {
-        let (index, probability, rest) = self.choice.as_ref()?.sample(u_select);
-        let index = index as u32;
-        let lights = self;
-        Some((LightRef { lights, index }, probability, rest))
+    pub fn choose(&self, from: &Receiver, u_select: f32) -> Option<(LightRef<'_>, f32)> {
+        let chosen = self.choice.choose(from, u_select)?;
+        let (lights, index) = (self, chosen.light);
+        Some((LightRef { lights, index }, chosen.probability))
+    }
+
+    /// Leaves the tree out.
+    #[cfg(test)]
+    pub(super) fn choose_by_power(&mut self) {
+        self.choice = Choice::by_power(&self.geometry, &self.lights);
+    }
+
+    /// Whether it matters for the choice of a light which way a point faces.
+    pub fn ask_for_normals(&self) -> bool {
+        self.choice.asks_for_normals()
     }
 
     /// The density \[sr⁻¹] with which [`Lights::sample`] at `from` chooses the direction `wi` by way of the emissive instance
     /// that `hit` lies on; 0 if that shines not, or not towards `from`.
-    pub fn pdf_area(&self, from: Vec3<f32>, hit: &SurfacePoint, wi: Vec3<f32>) -> f32 {
+    pub fn pdf_area(&self, from: &Receiver, hit: &SurfacePoint, wi: Vec3<f32>) -> f32 {
         let instance = self.geometry.instances().get(hit.instance as usize);
         let Some(index) = instance.and_then(|i| i.area_light) else {
             return 0.0;
@@ -208,7 +199,10 @@ impl Lights {
         if dark {
             return 0.0;
         }
-        self.probability(index) * emitter.pdf(&self.geometry, from, hit)
+        let whole = !self.choice.parts(index);
+        let primitive = if whole { WHOLE } else { hit.primitive };
+        let probability = self.choice.probability(from, index, primitive);
+        probability * emitter.pdf(&self.geometry, from.p, hit, whole)
     }
 
     /// The radiant flux \[W] that a light emits, in each channel: 4π I of a point light, ∫ I dω of a spot light's cone, π A L of
@@ -237,10 +231,9 @@ impl Lights {
 
     /// The density \[sr⁻¹] with which [`Lights::sample`] at `from` chooses the direction `wi` by way of the environment.
     pub fn pdf_environment(&self, from: Vec3<f32>, wi: Vec3<f32>) -> f32 {
-        match (self.environment, self.environment()) {
-            (Some(index), Some(e)) => self.probability(index) * e.pdf_from(from, wi),
-            _ => 0.0,
-        }
+        let probability = self.environment_probability();
+        self.environment()
+            .map_or(0.0, |e| probability * e.pdf_from(from, wi))
     }
 
     /// The environment's radiance \[W m⁻² sr⁻¹] from `wi` at `from`, together with [`Lights::pdf_environment`], for less than both
@@ -257,33 +250,28 @@ impl Lights {
         from: Vec3<f32>,
         wi: Vec3<f32>,
     ) -> ([f32; 3], f32) {
-        match (self.environment, self.environment()) {
-            (Some(index), Some(e)) => {
-                let (radiance, pdf) = e.radiance_and_pdf_from_by(guide, from, wi);
-                (radiance, self.probability(index) * pdf)
-            }
-            _ => ([0.0; 3], 0.0),
-        }
+        self.environment().map_or(([0.0; 3], 0.0), |e| {
+            let (radiance, pdf) = e.radiance_and_pdf_from_by(guide, from, wi);
+            (radiance, self.environment_probability() * pdf)
+        })
     }
 
-    /// The probability with which the environment is chosen; 0 without one.
+    /// The probability with which the environment is chosen, at any point; 0 without one.
     pub fn environment_probability(&self) -> f32 {
         self.environment
-            .map_or(0.0, |index| self.probability(index))
+            .map_or(0.0, |index| self.choice.probability_of_infinite(index))
     }
 
-    /// The probability with which a light is chosen.
-    pub fn probability(&self, light: u32) -> f32 {
-        self.choice
-            .as_ref()
-            .map_or(0.0, |c| c.probability(light as usize))
+    /// The probability with which a light is chosen at a point. Of a mesh that is chosen triangle by triangle, their sum: that takes time.
+    pub fn probability(&self, from: &Receiver, light: u32) -> f32 {
+        self.choice.probability_of_light(from, light)
     }
 
-    /// A direction towards a given light; its pdf is without the probability of the choice.
+    /// A direction towards a given light, or triangle of it; its pdf is without the probability of the choice.
     pub(super) fn sample_one(
         &self,
         guide: Guide,
-        index: u32,
+        (index, primitive): (u32, u32),
         (from, error): (Vec3<f32>, f32),
         u_select: f32,
         u: [f32; 2],
@@ -302,7 +290,7 @@ impl Lights {
                 }
             }
             (_, Some(emitter)) => {
-                let seen = emitter.sample(&self.geometry, (from, error), u_select, u)?;
+                let seen = emitter.sample(&self.geometry, (from, error), primitive, u_select, u)?;
                 LightSample {
                     wi: seen.wi,
                     target: LightTarget::Point(seen.p),
@@ -351,7 +339,8 @@ impl<'a> LightRef<'a> {
         u: [f32; 2],
     ) -> Option<LightSample> {
         let from = (from.p, from.error);
-        self.lights.sample_one(guide, self.index, from, u_select, u)
+        let which = (self.index, WHOLE);
+        self.lights.sample_one(guide, which, from, u_select, u)
     }
 
     /// The density \[sr⁻¹] with which [`LightRef::sample`] at `from` chooses the direction to `hit`; 0 if `hit` is no point of
@@ -366,74 +355,11 @@ impl<'a> LightRef<'a> {
             (Some(index), Some(emitter))
                 if index == self.index && emitter.radiance(hit, wi).iter().any(|&r| r > 0.0) =>
             {
-                emitter.pdf(&lights.geometry, from, hit)
+                emitter.pdf(&lights.geometry, from, hit, true)
             }
             _ => 0.0,
         }
     }
-}
-
-/// The power that a light sends into the scene, weighted by luminance \[W].
-fn power(light: &Light, geometry: &Geometry) -> f64 {
-    // A scene without extent still has lights to choose from.
-    let radius = f64::from(geometry.bounds().radius()).max(1e-6);
-    let cross_section = PI * radius * radius;
-    match light {
-        Light::Point { intensity, .. } => 4.0 * PI * luminance(*intensity),
-        Light::Spot {
-            intensity, cone, ..
-        } => cone.solid_angle() * luminance(*intensity),
-        Light::Directional { irradiance, .. } => cross_section * luminance(*irradiance),
-        Light::Area {
-            instance,
-            radiance,
-            two_sided,
-        } => {
-            let sides = if *two_sided { 2.0 } else { 1.0 };
-            sides * PI * f64::from(geometry.area(*instance)) * luminance(*radiance)
-        }
-        Light::Environment(e) => cross_section * spherical_integral(e),
-    }
-}
-
-/// ∫ L dω of the luminance over the sphere, by 256 stratified samples of the environment's own density.
-fn spherical_integral(e: &Environment) -> f64 {
-    const SIDE: u32 = 16;
-    let mut sum = 0.0;
-    for i in 0..SIDE * SIDE {
-        let u = [i % SIDE, i / SIDE].map(|k| (k as f32 + 0.5) / SIDE as f32);
-        let s = e.sample(u);
-        if s.pdf > 0.0 {
-            sum += luminance(s.radiance) / f64::from(s.pdf);
-        }
-    }
-    sum / f64::from(SIDE * SIDE)
-}
-
-/// ½ Φᵢ/ΣΦ + ½ 1/n over the n lights with power; 0 for the others.
-fn probabilities(powers: &[f64]) -> Vec<f32> {
-    let shines = |p: f64| p > 0.0 && p.is_finite();
-    let largest = powers
-        .iter()
-        .copied()
-        .filter(|&p| shines(p))
-        .fold(0.0, f64::max);
-    let total: f64 = powers
-        .iter()
-        .filter(|&&p| shines(p))
-        .map(|p| p / largest)
-        .sum();
-    let count = powers.iter().filter(|&&p| shines(p)).count() as f64;
-    powers
-        .iter()
-        .map(|&p| {
-            if shines(p) {
-                (0.5 * (p / largest) / total + 0.5 / count) as f32
-            } else {
-                0.0
-            }
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -42,7 +42,8 @@ impl Direct {
         let [u, v] = &mut self.u;
         vertices.streams.draw(base + 1, [u, v]);
         let u = [&self.u[0][..], &self.u[1]];
-        (scene.lights).sample_many(guide, &vertices.surfaces, &self.choice, u, &mut self.light);
+        let (from, normals) = (&vertices.surfaces, &vertices.receiving);
+        (scene.lights).sample_many(guide, from, normals, &self.choice, u, &mut self.light);
     }
 
     /// Evaluates the reflection functions, and follows the shadow rays where anything would be reflected.

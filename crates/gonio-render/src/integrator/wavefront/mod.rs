@@ -217,7 +217,7 @@ impl<'a> Wavefront<'a> {
         self.emitted.clear();
         self.emitted.resize(count, [0.0; 3]);
         let paths = &mut self.paths;
-        paths.begin(count, false);
+        paths.begin(count, false, false);
         for (i, id) in paths.id.iter_mut().enumerate() {
             *id = i as u32;
         }
@@ -255,8 +255,8 @@ impl<'a> Wavefront<'a> {
                 self.emitted[i] = radiance;
                 light.tell_apart(paths.id[i], light_at(scene, &point), 0, radiance);
             } else if radiance != [0.0; 3] {
-                let lights = &scene.lights;
-                let density = lights.pdf_area(paths.from.get(i), &point, ray.direction);
+                let from = paths.receiver(i);
+                let density = (scene.lights).pdf_area(&from, &point, ray.direction);
                 let arrived = weighted(paths, i, radiance, density);
                 light.add(paths.id[i], light_at(scene, &point), segment, arrived);
             }

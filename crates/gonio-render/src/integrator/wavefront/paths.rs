@@ -1,7 +1,7 @@
 //! [`Paths`], the paths of a wave between two surfaces.
 
-use gonio_num::Vectors;
-use gonio_scene::Ray;
+use gonio_num::{Vec3, Vectors};
+use gonio_scene::{Ray, Receiver};
 
 /// Paths on their way, as a structure of arrays.
 #[derive(Debug)]
@@ -15,6 +15,8 @@ pub(super) struct Paths {
     pub unscaling: [Vec<f32>; 3],
     /// The surface point that each has left: what lights were sampled from.
     pub from: Vectors,
+    /// The side of it from which light counts, as [`Receiver::normal`]; empty where lights don't ask for it.
+    pub facing: Vectors,
     /// The density with which the reflection function drew the direction; ∞ for a single direction, which no light sample finds.
     pub pdf: Vec<f32>,
 }
@@ -28,6 +30,7 @@ impl Paths {
             throughput: [const { Vec::new() }; 3],
             unscaling: [const { Vec::new() }; 3],
             from: Vectors::default(),
+            facing: Vectors::default(),
             pdf: Vec::new(),
         }
     }
@@ -39,7 +42,9 @@ impl Paths {
     /// Makes room for up to `most` paths, of which there are none yet.
     ///
     /// - `unscales`: whether there is an unscaling
-    pub fn begin(&mut self, most: usize, unscales: bool) {
+    /// - `faces`: whether there is a side from which light counts
+    pub fn begin(&mut self, most: usize, unscales: bool, faces: bool) {
+        self.facing.resize(if faces { most } else { 0 });
         for v in [&mut self.origin, &mut self.direction, &mut self.from] {
             v.resize(most);
         }
@@ -59,10 +64,26 @@ impl Paths {
         for v in [&mut self.origin, &mut self.direction, &mut self.from] {
             v.resize(count);
         }
+        if !self.facing.is_empty() {
+            self.facing.resize(count);
+        }
     }
 
     pub fn ray(&self, i: usize) -> Ray {
         Ray::new(self.origin.get(i), self.direction.get(i))
+    }
+
+    /// The point that path `i` has left.
+    pub fn receiver(&self, i: usize) -> Receiver {
+        Receiver {
+            p: self.from.get(i),
+            error: 0.0,
+            normal: if self.facing.is_empty() {
+                Vec3::zero()
+            } else {
+                self.facing.get(i)
+            },
+        }
     }
 
     pub fn throughput(&self, i: usize) -> [f32; 3] {

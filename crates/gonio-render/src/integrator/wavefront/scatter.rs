@@ -79,7 +79,8 @@ impl Scatter {
         next: &mut Paths,
     ) {
         let unscales = unscales || !paths.unscaling[0].is_empty();
-        next.begin(order.len(), unscales);
+        let faces = !vertices.receiving.is_empty();
+        next.begin(order.len(), unscales, faces);
         let mut place = 0;
         for (group, reflects) in vertices.each_group() {
             let even = match &reflects {
@@ -132,6 +133,9 @@ impl Scatter {
                 next.origin.set(place, self.origins.get(i));
                 next.direction.set(place, wi);
                 next.from.set(place, vertices.surfaces.p.get(i));
+                if faces {
+                    next.facing.set(place, vertices.receiving.get(i));
+                }
                 for (column, value) in next.throughput.iter_mut().zip(throughput) {
                     column[place] = value;
                 }

@@ -23,6 +23,8 @@ pub(super) struct Vertices<'a> {
     pub s: Vectors,
     pub t: Vectors,
     pub n: Vectors,
+    /// The side from which light counts, as [`Receiver::normal`](gonio_scene::Receiver::normal); empty where lights don't ask for it.
+    pub receiving: Vectors,
     /// Of the groups whose material is not the same all over, the points one by one; where each group's begin.
     uneven: Vec<Vertex<'a>>,
     starts: Vec<usize>,
@@ -48,6 +50,7 @@ impl<'a> Vertices<'a> {
             s: Vectors::default(),
             t: Vectors::default(),
             n: Vectors::default(),
+            receiving: Vectors::default(),
             uneven: Vec::new(),
             starts: Vec::new(),
             streams: SampleStreams::new(SamplerKind::default()),
@@ -116,6 +119,30 @@ impl<'a> Vertices<'a> {
             }
         }
         self.groups = groups;
+        self.find_receiving_sides();
+    }
+
+    fn find_receiving_sides(&mut self) {
+        let asked = self.plan.scene.lights.ask_for_normals();
+        let mut receiving = std::mem::take(&mut self.receiving);
+        receiving.resize(if asked { self.len() } else { 0 });
+        if asked {
+            for (group, reflects) in self.each_group() {
+                for (k, i) in group.range.clone().enumerate() {
+                    let transmits = match &reflects {
+                        Reflects::Evenly(model) => model.transmits(),
+                        Reflects::Unevenly(points) => points[k].transmits,
+                    };
+                    let side = if transmits {
+                        Vec3::zero()
+                    } else {
+                        self.facing_normal(i)
+                    };
+                    receiving.set(i, side);
+                }
+            }
+        }
+        self.receiving = receiving;
     }
 
     fn set_frame(&mut self, i: usize, frame: &Frame<f32>) {

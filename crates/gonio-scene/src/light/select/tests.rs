@@ -1,8 +1,10 @@
 use super::*;
+use crate::light::choice::probabilities;
 use crate::{Instance, Ray, Scene, SceneBuilder, Shape, TriangleMesh};
 use gonio_brdf::ModelSpec;
 use gonio_num::{Affine3, Real};
 use gonio_radiometry::sequence::Rng;
+use std::f64::consts::PI;
 
 const UP: Vec3<f32> = Vec3::new(0.0, 1.0, 0.0);
 
@@ -43,6 +45,10 @@ fn here(p: Vec3<f32>) -> SurfacePoint {
     }
 }
 
+fn at(p: Vec3<f32>) -> Receiver {
+    Receiver::all_around(&here(p))
+}
+
 /// Mean and standard error of Li cosθ / pdf at `p` facing up, by `Lights::sample`.
 fn irradiance(scene: &Scene, p: Vec3<f32>, name: &str, count: u32) -> (f64, f64) {
     let mut rng = Rng::from_name(name);
@@ -50,7 +56,7 @@ fn irradiance(scene: &Scene, p: Vec3<f32>, name: &str, count: u32) -> (f64, f64)
     let from = here(p);
     for _ in 0..count {
         let (select, u) = (rng.next_f32(), [rng.next_f32(), rng.next_f32()]);
-        let value = scene.lights.sample(&from, select, u).map_or(0.0, |s| {
+        let value = scene.lights.sample(&at(p), select, u).map_or(0.0, |s| {
             let open = match s.target {
                 LightTarget::Point(target) => !scene.occluded(&from.spawn_ray_to(target)),
                 LightTarget::Infinite => !scene.occluded(&from.spawn_ray(s.wi)),
@@ -206,7 +212,7 @@ fn a_one_sided_light_is_dark_from_behind() {
     let s = both
         .lights
         .sample(
-            &here(Vec3::new(0.0, 2.0, 0.0)),
+            &at(Vec3::new(0.0, 2.0, 0.0)),
             0.5,
             [rng.next_f32(), rng.next_f32()],
         )
@@ -245,9 +251,12 @@ fn a_rectangle_does_not_light_its_own_back() {
                 let u = [rng.next_f32(), rng.next_f32()];
                 let select = rng.next_f32();
                 assert!(
-                    scene.lights.sample(&point, select, u).is_none(),
+                    (scene.lights)
+                        .sample(&Receiver::all_around(&point), select, u)
+                        .is_none(),
                     "{point:?}"
                 );
+                let front = Receiver::all_around(&front);
                 assert!(scene.lights.sample(&front, select, u).is_some());
             }
         }
@@ -292,7 +301,7 @@ fn choosing_among_lights_sums_over_them() {
     let (scene, exact) = many();
     expect(&scene, Vec3::zero(), exact, "many lights");
     let total: f64 = (0..scene.lights.len() as u32)
-        .map(|i| f64::from(scene.lights.probability(i)))
+        .map(|i| f64::from(scene.lights.probability(&at(Vec3::zero()), i)))
         .sum();
     assert!((total - 1.0).abs() < 1e-6, "{total}");
     let delta = scene.lights.each().filter(LightRef::is_delta).count();
@@ -361,7 +370,7 @@ fn sampled_and_found_densities_agree() {
         let from = here(Vec3::zero());
         for _ in 0..2_000 {
             let (select, u) = (rng.next_f32(), [rng.next_f32(), rng.next_f32()]);
-            let Some(s) = scene.lights.sample(&from, select, u) else {
+            let Some(s) = scene.lights.sample(&at(from.p), select, u) else {
                 continue;
             };
             if s.delta {
@@ -372,7 +381,7 @@ fn sampled_and_found_densities_agree() {
                     if (hit.p - p).length() < 1e-3 && hit.ng.dot(s.wi).abs() > 0.1 =>
                 {
                     assert_eq!(scene.emitted(&hit, -s.wi), s.radiance);
-                    scene.lights.pdf_area(from.p, &hit, s.wi)
+                    scene.lights.pdf_area(&at(from.p), &hit, s.wi)
                 }
                 (None, LightTarget::Infinite) => scene.lights.pdf_environment(from.p, s.wi),
                 // Past the rim of the light by rounding, or on its far side.
@@ -407,7 +416,7 @@ fn lights_without_power_are_never_chosen() {
     assert!(
         scene
             .lights
-            .sample(&here(Vec3::zero()), 0.3, [0.5; 2])
+            .sample(&at(Vec3::zero()), 0.3, [0.5; 2])
             .is_none()
     );
     assert_eq!(scene.lights.pdf_environment(Vec3::zero(), UP), 0.0);
@@ -418,13 +427,15 @@ fn lights_without_power_are_never_chosen() {
 fn other_surfaces_have_no_density() {
     let (scene, _) = many();
     let mut hit = here(Vec3::zero());
-    assert_eq!(scene.lights.pdf_area(UP, &hit, -UP), 0.0);
+    assert_eq!(scene.lights.pdf_area(&at(UP), &hit, -UP), 0.0);
     hit.instance = 0;
     hit.p = Vec3::new(0.0, 1.0, 0.0);
     hit.ng = -UP;
-    assert!(scene.lights.pdf_area(Vec3::zero(), &hit, UP) > 0.0);
+    assert!(scene.lights.pdf_area(&at(Vec3::zero()), &hit, UP) > 0.0);
     assert_eq!(
-        scene.lights.pdf_area(Vec3::new(0.0, 2.0, 0.0), &hit, -UP),
+        scene
+            .lights
+            .pdf_area(&at(Vec3::new(0.0, 2.0, 0.0)), &hit, -UP),
         0.0,
         "from behind"
     );

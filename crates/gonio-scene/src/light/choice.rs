@@ -1,0 +1,338 @@
+//! [`Choice`], how one of a scene's lights is chosen for a point.
+
+use super::emitter::Emitter;
+use super::tree::LightTree;
+use super::{Light, Receiver, WHOLE, luminance};
+use crate::{Geometry, Surfaces};
+use gonio_env::Environment;
+use gonio_num::dispatch::{Kernel, dispatch};
+use gonio_num::{Vec3, Vectors};
+use gonio_radiometry::warp::Discrete;
+use std::f64::consts::PI;
+
+/// How one of a scene's lights is chosen for a point.
+///
+/// Among things of power Φᵢ one is chosen with the probability pᵢ = ½ Φᵢ/ΣΦ + ½ 1/n. Power alone would starve a small lamp beside the
+/// subject of a scene under a large sky; the uniform half bounds the variance of any light at twice what sampling by power, and at twice
+/// what sampling evenly, would give. Power of a light that is infinitely far away is what passes through the bounding sphere of the scene,
+/// of radius R: π R² E for parallel light, π R² ∫L dω for an environment.
+///
+/// Of several lights that have a place the one is chosen by a tree, which knows the point; together they are one thing beside those that
+/// are infinitely far away.
+#[derive(Debug)]
+pub(super) enum Choice {
+    /// There is nothing to choose from.
+    None,
+    /// One of the lights.
+    ByPower(Discrete),
+    /// The tree, or one of the others.
+    Tree {
+        tree: LightTree,
+        /// The tree, then the others in their order.
+        branch: Discrete,
+        /// The others.
+        infinite: Vec<u32>,
+        /// Whether each light is chosen triangle by triangle.
+        parts: Vec<bool>,
+    },
+}
+
+/// A light that was chosen.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Chosen {
+    pub light: u32,
+    /// The triangle of a mesh that is chosen triangle by triangle, else [`WHOLE`].
+    pub primitive: u32,
+    /// 0: none.
+    pub probability: f32,
+    /// Uniform in \[0, 1) again.
+    pub rest: f32,
+}
+
+/// The largest number of single precision below 1.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+
+impl Choice {
+    pub fn new(geometry: &Geometry, lights: &[Light], emitters: &[Option<Emitter>]) -> Self {
+        let powers: Vec<f64> = lights.iter().map(|light| power(light, geometry)).collect();
+        match LightTree::new(geometry, lights, emitters, &powers) {
+            Some(tree) => Self::with_tree(tree, lights, &powers),
+            None => Self::by_power(geometry, lights),
+        }
+    }
+
+    /// Without a tree.
+    pub fn by_power(geometry: &Geometry, lights: &[Light]) -> Self {
+        let powers: Vec<f64> = lights.iter().map(|light| power(light, geometry)).collect();
+        Discrete::new(&probabilities(&powers)).map_or(Self::None, Self::ByPower)
+    }
+
+    fn with_tree(tree: LightTree, lights: &[Light], powers: &[f64]) -> Self {
+        let mut branches = vec![0.0];
+        let mut infinite = Vec::new();
+        for (i, &power) in powers.iter().enumerate() {
+            if tree.holds(i as u32) {
+                branches[0] += power;
+            } else {
+                branches.push(power);
+                infinite.push(i as u32);
+            }
+        }
+        match Discrete::new(&probabilities(&branches)) {
+            Ok(branch) => Self::Tree {
+                parts: (0..lights.len() as u32)
+                    .map(|i| tree.has_parts(i))
+                    .collect(),
+                tree,
+                branch,
+                infinite,
+            },
+            Err(_) => Self::None,
+        }
+    }
+
+    pub fn is_none(&self) -> bool {
+        matches!(self, Self::None)
+    }
+
+    /// Whether it matters which way a point faces.
+    pub fn asks_for_normals(&self) -> bool {
+        matches!(self, Self::Tree { .. })
+    }
+
+    /// Whether a light is chosen triangle by triangle.
+    pub fn parts(&self, light: u32) -> bool {
+        match self {
+            Self::Tree { parts, .. } => parts[light as usize],
+            _ => false,
+        }
+    }
+
+    /// Chooses a light for a point.
+    #[inline]
+    pub fn choose(&self, at: &Receiver, u: f32) -> Option<Chosen> {
+        match self {
+            Self::Tree { .. } => dispatch(Choose {
+                choice: self,
+                at,
+                u,
+            }),
+            _ => self.choose_here(at, u),
+        }
+    }
+
+    /// As [`Choice::choose`], in the instruction set that the caller has chosen.
+    #[inline(always)]
+    fn choose_here(&self, at: &Receiver, u: f32) -> Option<Chosen> {
+        let whole = |light, (probability, rest)| Chosen {
+            light,
+            primitive: WHOLE,
+            probability,
+            rest,
+        };
+        match self {
+            Self::None => None,
+            Self::ByPower(lights) => {
+                let (light, probability, rest) = lights.sample(u);
+                Some(whole(light as u32, (probability, rest)))
+            }
+            Self::Tree {
+                tree,
+                branch,
+                infinite,
+                ..
+            } => {
+                let (index, probability, rest) = if infinite.is_empty() {
+                    (0, 1.0, u)
+                } else {
+                    branch.sample(u)
+                };
+                if index > 0 {
+                    return Some(whole(infinite[index - 1], (probability, rest)));
+                }
+                let found = tree.choose(at, finer(rest, at.p))?;
+                Some(Chosen {
+                    light: found.light,
+                    primitive: found.primitive,
+                    probability: probability * found.probability as f32,
+                    rest: (found.rest as f32).min(BELOW_ONE),
+                })
+            }
+        }
+    }
+
+    /// [`Choice::choose`] for many points.
+    ///
+    /// - `normals`: as [`Receiver::normal`]; empty where [`Choice::asks_for_normals`] says that they don't matter
+    /// - `chosen`: one a point, written
+    pub fn choose_many(
+        &self,
+        from: &Surfaces,
+        normals: &Vectors,
+        u: &[f32],
+        chosen: &mut Vec<Chosen>,
+    ) {
+        chosen.clear();
+        dispatch(ChooseMany {
+            choice: self,
+            from,
+            normals,
+            u: &u[..from.p.len()],
+            chosen,
+        });
+    }
+
+    /// The probability with which a light is chosen at a point, or this triangle of it, if it is chosen triangle by triangle.
+    pub fn probability(&self, at: &Receiver, light: u32, primitive: u32) -> f32 {
+        match self {
+            Self::Tree { tree, branch, .. } if tree.holds(light) => {
+                branch.probability(0) * tree.probability(at, light, primitive) as f32
+            }
+            _ => self.probability_of_infinite(light),
+        }
+    }
+
+    /// The probability with which a light is chosen, if that is the same everywhere.
+    pub fn probability_of_infinite(&self, light: u32) -> f32 {
+        match self {
+            Self::None => 0.0,
+            Self::ByPower(lights) => lights.probability(light as usize),
+            Self::Tree {
+                branch, infinite, ..
+            } => {
+                let place = infinite.binary_search(&light);
+                place.map_or(0.0, |i| branch.probability(i + 1))
+            }
+        }
+    }
+
+    /// The probability that a light is chosen, or any triangle of it.
+    pub fn probability_of_light(&self, at: &Receiver, light: u32) -> f32 {
+        match self {
+            Self::Tree { tree, branch, .. } if tree.holds(light) => {
+                branch.probability(0) * tree.probability_of_light(at, light) as f32
+            }
+            _ => self.probability_of_infinite(light),
+        }
+    }
+}
+
+/// A number of 24 bits with 29 more, which are a hash of it and the point: a light of many is chosen with a smaller probability than 2⁻²⁴, and
+/// what is left of the number within its share would have no digits.
+#[inline(always)]
+fn finer(u: f32, p: Vec3<f32>) -> f64 {
+    let mut h = u64::from(u.to_bits()) << 32 | u64::from(p.x.to_bits());
+    h ^= (u64::from(p.y.to_bits()) << 32 | u64::from(p.z.to_bits())).rotate_left(17);
+    // The finalizer of SplitMix64 (Steele, Lea and Flood 2014).
+    h = (h ^ (h >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    h = (h ^ (h >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    h ^= h >> 31;
+    // Multiples of 2⁻⁵³ below 2⁻²⁴.
+    let low = (h >> 35) as f64 * (1.0 / (1_u64 << 53) as f64);
+    f64::from(u) + low
+}
+
+struct Choose<'a> {
+    choice: &'a Choice,
+    at: &'a Receiver,
+    u: f32,
+}
+
+impl Kernel for Choose<'_> {
+    type Output = Option<Chosen>;
+    #[inline(always)]
+    fn run<const L: usize>(self) -> Self::Output {
+        self.choice.choose_here(self.at, self.u)
+    }
+}
+
+struct ChooseMany<'a> {
+    choice: &'a Choice,
+    from: &'a Surfaces,
+    normals: &'a Vectors,
+    u: &'a [f32],
+    chosen: &'a mut Vec<Chosen>,
+}
+
+impl Kernel for ChooseMany<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const L: usize>(self) {
+        for i in 0..self.u.len() {
+            let at = Receiver {
+                p: self.from.p.get(i),
+                error: self.from.error[i],
+                normal: if self.normals.is_empty() {
+                    Vec3::zero()
+                } else {
+                    self.normals.get(i)
+                },
+            };
+            let found = self.choice.choose_here(&at, self.u[i]);
+            self.chosen.push(found.unwrap_or_default());
+        }
+    }
+}
+
+/// The power that a light sends into the scene, weighted by luminance \[W].
+pub(super) fn power(light: &Light, geometry: &Geometry) -> f64 {
+    // A scene without extent still has lights to choose from.
+    let radius = f64::from(geometry.bounds().radius()).max(1e-6);
+    let cross_section = PI * radius * radius;
+    match light {
+        Light::Point { intensity, .. } => 4.0 * PI * luminance(*intensity),
+        Light::Spot {
+            intensity, cone, ..
+        } => cone.solid_angle() * luminance(*intensity),
+        Light::Directional { irradiance, .. } => cross_section * luminance(*irradiance),
+        Light::Area {
+            instance,
+            radiance,
+            two_sided,
+        } => {
+            let sides = if *two_sided { 2.0 } else { 1.0 };
+            sides * PI * f64::from(geometry.area(*instance)) * luminance(*radiance)
+        }
+        Light::Environment(e) => cross_section * spherical_integral(e),
+    }
+}
+
+/// ∫ L dω of the luminance over the sphere, by 256 stratified samples of the environment's own density.
+fn spherical_integral(e: &Environment) -> f64 {
+    const SIDE: u32 = 16;
+    let mut sum = 0.0;
+    for i in 0..SIDE * SIDE {
+        let u = [i % SIDE, i / SIDE].map(|k| (k as f32 + 0.5) / SIDE as f32);
+        let s = e.sample(u);
+        if s.pdf > 0.0 {
+            sum += luminance(s.radiance) / f64::from(s.pdf);
+        }
+    }
+    sum / f64::from(SIDE * SIDE)
+}
+
+/// ½ Φᵢ/ΣΦ + ½ 1/n over the n lights with power; 0 for the others.
+pub(super) fn probabilities(powers: &[f64]) -> Vec<f32> {
+    let shines = |p: f64| p > 0.0 && p.is_finite();
+    let largest = powers
+        .iter()
+        .copied()
+        .filter(|&p| shines(p))
+        .fold(0.0, f64::max);
+    let total: f64 = powers
+        .iter()
+        .filter(|&&p| shines(p))
+        .map(|p| p / largest)
+        .sum();
+    let count = powers.iter().filter(|&&p| shines(p)).count() as f64;
+    powers
+        .iter()
+        .map(|&p| {
+            if shines(p) {
+                (0.5 * (p / largest) / total + 0.5 / count) as f32
+            } else {
+                0.0
+            }
+        })
+        .collect()
+}
