@@ -1,5 +1,8 @@
 //! [`Map`], a checked picture of radiance and its bilinear interpolation.
 
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
 use crate::info::Origin;
 use crate::projection::disc_from_uv;
 use crate::texels::{self, Defects, Remedy};

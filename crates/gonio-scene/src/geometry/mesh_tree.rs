@@ -78,7 +78,6 @@ impl MeshTree {
 pub(crate) struct Triangles<'a, K: Kernel, const ANY: bool> {
     kernel: K,
     blocks: &'a [TriangleBlock],
-    prepared: K::Triangles,
     exact: TriangleRay,
     instance: u32,
     nearest: &'a mut Nearest,
@@ -98,7 +97,6 @@ impl<'a, K: Kernel, const ANY: bool> Triangles<'a, K, ANY> {
         Self {
             kernel,
             blocks: &tree.blocks,
-            prepared: kernel.prepare_triangles(&exact),
             exact,
             instance,
             nearest,
@@ -118,8 +116,9 @@ impl<K: Kernel, const ANY: bool> Visitor for Triangles<'_, K, ANY> {
     #[inline(always)]
     fn leaf(&mut self, first: u32, count: u32) -> bool {
         let (first, count) = (first as usize, count as usize);
+        let ray = self.kernel.prepare_triangles(&self.exact);
         for block in &self.blocks[first..first + count] {
-            let mut hits = self.kernel.triangles(block, &self.prepared, self.nearest.t);
+            let mut hits = self.kernel.triangles(block, &ray, self.nearest.t);
             while hits != 0 {
                 let lane = hits.trailing_zeros() as usize % LANES;
                 hits &= hits - 1;

@@ -9,6 +9,7 @@
 mod avx2;
 mod batch;
 mod bounds;
+mod coherence;
 mod kernel;
 mod mesh_tree;
 mod nearest;

@@ -1,12 +1,13 @@
 //! The two ray queries, and the choice of instructions for them.
 
+use super::coherence::are_coherent;
 use super::kernel::{Kernel, Portable};
 use super::mesh_tree::{MeshTree, Triangles};
 use super::nearest::Nearest;
 use super::placed::{Kind, Placed};
 use super::shape::{cross_flat, cross_sphere};
 use super::sphere_tree::Spheres;
-use super::walk::{BoxRay, Rays, Visitor, walk, walk_many};
+use super::walk::{BoxRay, Order, Rays, Visitor, walk, walk_many};
 use super::{Geometry, Hit, Ray};
 use gonio_num::Vectors;
 
@@ -100,13 +101,16 @@ impl Geometry {
         rays: [&Vectors; 2],
         nearest: &mut [Nearest],
     ) {
+        let size = self.bounds.max - self.bounds.min;
+        let coherent = are_coherent(rays, size.length());
         if !self.simple.few {
             let mut rays = InstanceRays::<K, ANY> {
                 kernel,
                 geometry: self,
                 open: Open::new(rays, nearest),
             };
-            walk_many(kernel, &self.top, self.top.bytes(), &mut rays);
+            let order = Order::of(coherent, self.top.bytes());
+            walk_many(kernel, &self.top, order, &mut rays);
         }
         for &(instance, tree) in &self.simple.meshes {
             let tree = &self.trees[tree as usize];
@@ -117,7 +121,8 @@ impl Geometry {
                 instance,
                 open: Open::new(rays, nearest),
             };
-            walk_many(kernel, &tree.tree, tree.bytes(), &mut rays);
+            let order = Order::of(coherent, tree.bytes());
+            walk_many(kernel, &tree.tree, order, &mut rays);
         }
         if !self.spheres.blocks.is_empty() {
             let mut rays = SphereRays::<K, ANY> {
@@ -125,7 +130,8 @@ impl Geometry {
                 geometry: self,
                 open: Open::new(rays, nearest),
             };
-            walk_many(kernel, &self.spheres.tree, self.spheres.bytes(), &mut rays);
+            let order = Order::of(coherent, self.spheres.bytes());
+            walk_many(kernel, &self.spheres.tree, order, &mut rays);
         }
     }
 

@@ -129,7 +129,7 @@ pub(crate) struct Spheres<'a, K: Kernel, const ANY: bool> {
     blocks: &'a [SphereBlock],
     placed: &'a [Placed],
     ray: Ray,
-    prepared: K::Spheres,
+    rough: SphereRay,
     nearest: &'a mut Nearest,
 }
 
@@ -149,7 +149,7 @@ impl<'a, K: Kernel, const ANY: bool> Spheres<'a, K, ANY> {
             blocks: &tree.blocks,
             placed,
             ray: *ray,
-            prepared: kernel.prepare_spheres(&SphereRay::new(ray, bounds)),
+            rough: SphereRay::new(ray, bounds),
             nearest,
         };
         (BoxRay::new(ray.origin, ray.direction, bounds), visitor)
@@ -167,8 +167,9 @@ impl<K: Kernel, const ANY: bool> Visitor for Spheres<'_, K, ANY> {
     #[inline(always)]
     fn leaf(&mut self, first: u32, count: u32) -> bool {
         let (first, count) = (first as usize, count as usize);
+        let rough = self.kernel.prepare_spheres(&self.rough);
         for block in &self.blocks[first..first + count] {
-            let mut hits = self.kernel.spheres(block, &self.prepared, self.nearest.t);
+            let mut hits = self.kernel.spheres(block, &rough, self.nearest.t);
             while hits != 0 {
                 let lane = hits.trailing_zeros() as usize % WIDTH;
                 hits &= hits - 1;

@@ -194,38 +194,66 @@ const LARGE: usize = 1 << 20;
 /// Walks at a time: while one waits for the memory that it announced, the others go on.
 const STREAMS: usize = 8;
 
-/// [`walk`] for many rays; in a tree of many bytes, those of what its owner stores included, a step of one after a step of another.
+/// How many rays walk through a tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Order {
+    /// One after the other.
+    Alone,
+    /// A step of one after a step of another.
+    InTurns,
+}
+
+impl Order {
+    /// For a tree of so many bytes, those of what its owner stores included. Rays that go the same way find in the cache what the one
+    /// before them used.
+    #[inline(always)]
+    pub(crate) fn of(coherent: bool, bytes: usize) -> Self {
+        if coherent || bytes < LARGE {
+            Self::Alone
+        } else {
+            Self::InTurns
+        }
+    }
+}
+
+/// [`walk`] for many rays.
 #[inline(always)]
 pub(crate) fn walk_many<K: Kernel, R: Rays>(
     kernel: K,
     tree: &WideTree,
-    bytes: usize,
+    order: Order,
     rays: &mut R,
 ) {
     if tree.nodes.is_empty() {
         return;
     }
-    if bytes < LARGE {
-        while let Some((ray, mut visitor)) = rays.next() {
-            walk(kernel, tree, &ray, &mut visitor);
+    match order {
+        Order::Alone => {
+            while let Some((ray, mut visitor)) = rays.next() {
+                walk(kernel, tree, &ray, &mut visitor);
+            }
         }
-        return;
+        Order::InTurns => walk_in_turns(kernel, tree, rays),
     }
+}
+
+#[inline(always)]
+fn walk_in_turns<K: Kernel, R: Rays>(kernel: K, tree: &WideTree, rays: &mut R) {
     let mut walks = Vec::with_capacity(STREAMS);
     while walks.len() < STREAMS
         && let Some((ray, visitor)) = rays.next()
     {
-        walks.push((Walk::new(), kernel.prepare_boxes(&ray), visitor));
+        walks.push((Walk::new(), ray, visitor));
     }
     while !walks.is_empty() {
         let mut i = 0;
         while let Some((walk, ray, visitor)) = walks.get_mut(i) {
-            if !walk.step(kernel, tree, ray, visitor) {
+            if !walk.step(kernel, tree, &kernel.prepare_boxes(ray), visitor) {
                 i += 1;
             } else if let Some((next, of_next)) = rays.next() {
                 // Its stack is empty, or holds what no longer counts.
                 walk.restart();
-                *ray = kernel.prepare_boxes(&next);
+                *ray = next;
                 *visitor = of_next;
                 i += 1;
             } else {

@@ -2,6 +2,7 @@
 
 use super::agreement::{bits, ray};
 use super::scenes::{Random, bumpy_sphere, instance, one, soup};
+use crate::geometry::coherence::are_coherent;
 use crate::geometry::nearest::Nearest;
 use crate::geometry::{Geometry, Shape, kernel::Portable};
 use crate::{Hit, Ray};
@@ -49,8 +50,30 @@ fn many_rays_at_once_are_each_alone() {
     let corners = soup(&mut Random::named("soup"), 500, 0.2);
     for (k, geometry) in geometries(&mut random).iter().enumerate() {
         // Fewer than are walked at a time, and more.
-        for count in [0, 1, 5, 1000] {
+        for (count, coherent) in [
+            (0, false),
+            (1, false),
+            (5, false),
+            (1000, false),
+            (15, true),
+            (1003, true),
+        ] {
             let mut rays: Vec<Ray> = (0..count).map(|_| ray(&mut random, &corners)).collect();
+            // As a camera has them, too: those are walked one by one.
+            let eye = random.direction() * 3.0;
+            if coherent {
+                let (mut toward, mut aside) = (-eye.normalize(), random.direction() * 1e-3);
+                for ray in &mut rays {
+                    toward = (toward + aside).normalize();
+                    if random.below(100) == 0 {
+                        (toward, aside) = (
+                            (random.point() * 0.7 - eye).normalize(),
+                            random.direction() * 1e-3,
+                        );
+                    }
+                    (ray.origin, ray.direction) = (eye, toward);
+                }
+            }
             if count > 5 {
                 rays[3].direction = Vec3::zero();
                 rays[4].origin.x = f32::NAN;
@@ -63,6 +86,9 @@ fn many_rays_at_once_are_each_alone() {
                 directions.set(i, ray.direction);
             }
             let columns = [&origins, &directions];
+            let size = geometry.bounds().max - geometry.bounds().min;
+            let told = are_coherent(columns, size.length());
+            assert!(count < 1000 || k == 7 || told == coherent, "{k}");
             let ends: Vec<f32> = rays.iter().map(|r| r.t_max).collect();
             let (mut hits, mut occluded) = (Vec::new(), Vec::new());
             geometry.intersect_many(columns, &mut hits);
@@ -87,7 +113,7 @@ fn many_rays_at_once_are_each_alone() {
                 met += usize::from(truth.is_some());
             }
             assert!(
-                count < 1000 || k == 7 || (10..990).contains(&met),
+                count < 1000 || coherent || k == 7 || (10..990).contains(&met),
                 "{k} {met}"
             );
         }

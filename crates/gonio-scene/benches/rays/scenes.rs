@@ -1,16 +1,8 @@
-//! Ray queries on one thread, in rays a second (divan's "items/s"), on two scenes: a bumpy sphere of 998,000 triangles and
-//! a soup of 200,000. Pin it to one core to compare: `taskset -c 0 cargo bench -p gonio-scene`.
+//! The two scenes of the benches, and sets of rays.
 
-use divan::counter::ItemsCount;
-use divan::{Bencher, black_box};
 use gonio_num::{Affine3, Vec3};
-use gonio_scene::{Geometry, Instance, Ray, Shape, TriangleMesh, mesh};
-use std::path::Path;
-use std::sync::{Arc, LazyLock};
-
-fn main() {
-    divan::main();
-}
+use gonio_scene::{Geometry, Instance, Ray, Shape, TriangleMesh};
+use std::sync::Arc;
 
 const SIDE: usize = 512;
 
@@ -39,7 +31,7 @@ impl Random {
 }
 
 /// Three octaves of bumps on the unit sphere around (0, 1.06, 0).
-fn sphere_mesh() -> TriangleMesh {
+pub fn sphere_mesh() -> TriangleMesh {
     let (columns, rows) = (1000u32, 501u32);
     let mut mesh = TriangleMesh::default();
     for i in 0..rows {
@@ -71,7 +63,7 @@ fn sphere_mesh() -> TriangleMesh {
     mesh
 }
 
-fn soup_mesh() -> TriangleMesh {
+pub fn soup_mesh() -> TriangleMesh {
     let mut random = Random(7);
     let mut mesh = TriangleMesh::default();
     for i in 0..200_000 {
@@ -85,7 +77,7 @@ fn soup_mesh() -> TriangleMesh {
     mesh
 }
 
-fn place(mesh: TriangleMesh) -> Geometry {
+pub fn place(mesh: TriangleMesh) -> Geometry {
     let instance = Instance {
         shape: 0,
         to_world: Affine3::identity(),
@@ -95,15 +87,8 @@ fn place(mesh: TriangleMesh) -> Geometry {
     Geometry::build(vec![Shape::Mesh(Arc::new(mesh))], vec![instance]).expect("a sound mesh")
 }
 
-static SPHERE: LazyLock<Geometry> = LazyLock::new(|| place(sphere_mesh()));
-static SOUP: LazyLock<Geometry> = LazyLock::new(|| place(soup_mesh()));
-
-fn scene(name: &str) -> &'static Geometry {
-    if name == "soup" { &SOUP } else { &SPHERE }
-}
-
 /// A camera's rays, by tiles of 8 × 8.
-fn primary() -> Vec<Ray> {
+pub fn primary() -> Vec<Ray> {
     let eye = Vec3::new(0.0, 2.2, 6.0);
     let camera = Affine3::look_at(eye, Vec3::new(0.0, 0.9, 0.0), Vec3::new(0.0, 1.0, 0.0));
     let slope = 12f64.to_radians().tan();
@@ -122,7 +107,7 @@ fn primary() -> Vec<Ray> {
 }
 
 /// Random points of the bounding cube, random directions.
-fn incoherent() -> Vec<Ray> {
+pub fn incoherent() -> Vec<Ray> {
     let mut random = Random(1);
     (0..SIDE * SIDE)
         .map(|_| {
@@ -133,7 +118,7 @@ fn incoherent() -> Vec<Ray> {
 }
 
 /// From random points of the surface, cosine-distributed around the normal.
-fn second_bounce(g: &Geometry) -> Vec<Ray> {
+pub fn second_bounce(g: &Geometry) -> Vec<Ray> {
     let mut random = Random(2);
     (0..SIDE * SIDE)
         .map(|_| {
@@ -145,80 +130,4 @@ fn second_bounce(g: &Geometry) -> Vec<Ray> {
             Ray::new(s.p + n * 1e-4, d.to_f32())
         })
         .collect()
-}
-
-fn nearest(bencher: Bencher, g: &Geometry, rays: &[Ray]) {
-    bencher.counter(ItemsCount::new(rays.len())).bench(|| {
-        rays.iter()
-            .filter(|r| black_box(g.intersect(r)).is_some())
-            .count()
-    });
-}
-
-fn any(bencher: Bencher, g: &Geometry, rays: &[Ray]) {
-    bencher
-        .counter(ItemsCount::new(rays.len()))
-        .bench(|| rays.iter().filter(|r| black_box(g.occluded(r))).count());
-}
-
-#[divan::bench(args = ["sphere", "soup"], sample_count = 9)]
-fn a_primary(bencher: Bencher, name: &str) {
-    nearest(bencher, scene(name), &primary());
-}
-
-#[divan::bench(args = ["sphere", "soup"], sample_count = 9)]
-fn b_incoherent(bencher: Bencher, name: &str) {
-    nearest(bencher, scene(name), &incoherent());
-}
-
-#[divan::bench(args = ["sphere", "soup"], sample_count = 9)]
-fn c_second_bounce(bencher: Bencher, name: &str) {
-    nearest(bencher, scene(name), &second_bounce(scene(name)));
-}
-
-#[divan::bench(args = ["sphere", "soup"], sample_count = 9)]
-fn d_any_primary(bencher: Bencher, name: &str) {
-    any(bencher, scene(name), &primary());
-}
-
-#[divan::bench(args = ["sphere", "soup"], sample_count = 9)]
-fn e_any_incoherent(bencher: Bencher, name: &str) {
-    any(bencher, scene(name), &incoherent());
-}
-
-#[divan::bench(args = ["sphere", "soup"], sample_count = 3)]
-fn f_build(bencher: Bencher, name: &str) {
-    let make = if name == "soup" {
-        soup_mesh
-    } else {
-        sphere_mesh
-    };
-    bencher.with_inputs(make).bench_values(place);
-}
-
-/// 998,000 triangles of binary PLY.
-#[divan::bench(sample_count = 3)]
-fn g_read_ply(bencher: Bencher) {
-    let mesh = sphere_mesh();
-    let mut bytes = format!(
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
-         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-        mesh.positions.len(),
-        mesh.indices.len()
-    )
-    .into_bytes();
-    for p in &mesh.positions {
-        for x in p.to_array() {
-            bytes.extend(x.to_le_bytes());
-        }
-    }
-    for t in &mesh.indices {
-        bytes.push(3);
-        for i in t {
-            bytes.extend(i.to_le_bytes());
-        }
-    }
-    bencher
-        .counter(ItemsCount::new(mesh.indices.len()))
-        .bench(|| mesh::ply::parse(black_box(&bytes), Path::new("memory")).expect("sound"));
 }
