@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 """Samples a CPU second of whole scenes: Gonio against Mitsuba 3's llvm_ad_rgb, in turn, in one run.
 
-Needs mitsuba 3.9 and numpy in the Python that runs it, libLLVM, a release build of Gonio, and a folder with `scenes.py`, whose
-`get(name, resolution)` returns Mitsuba scene dictionaries (see `compare_images.py`):
+Needs mitsuba 3.9 and numpy in the Python that runs it, libLLVM, and a release build of Gonio; `cargo xtask bench peers scenes` sees to that:
 
-    python benches/peers/bench_scenes.py --peers FOLDER --gonio target/release/gonio --work OUT [SCENE ...]
+    python benches/peers/bench_scenes.py --gonio target/release/gonio --work OUT [SCENE ...]
 
 Both follow paths of seven reflections at 512 x 512 pixels, plain multiple importance sampling, box filter. Mitsuba's scene is loaded and its
 kernel compiled before; of Gonio, the time of an image of one sample is taken off. The medians of `--runs` pairs are compared. Seconds of
@@ -56,7 +55,7 @@ def gonio_seconds(args, toml, spp):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", default=["ibl", "cornell", "mesh", "lights", "veach"])
-    parser.add_argument("--peers", type=pathlib.Path, required=True, help="folder with scenes.py and its assets")
+    parser.add_argument("--peers", type=pathlib.Path, default=pathlib.Path(__file__).parent, help="another folder with a scenes.py")
     parser.add_argument("--gonio", type=pathlib.Path, required=True, help="the release build of the command")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for scenes and images")
     parser.add_argument("--spp", type=int, default=32)

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 """Compares images that Gonio renders with Mitsuba 3's, scene by scene.
 
-Needs mitsuba 3.9 and numpy in the Python that runs it (and libLLVM for its variant llvm_ad_rgb), a release build of Gonio, and a
-folder with `scenes.py`, whose `get(name, resolution)` returns Mitsuba scene dictionaries, and the assets they name:
+Needs mitsuba 3.9 and numpy in the Python that runs it (and libLLVM for its variant llvm_ad_rgb), and a release build of Gonio:
 
-    python benches/peers/compare_images.py --peers FOLDER --gonio target/release/gonio --work OUT [SCENE ...]
+    python benches/peers/compare_images.py --gonio target/release/gonio --work OUT [SCENE ...]
 
-The scenes of `glass_scenes.py`, beside this file, need no folder: `--peers` may be left out.
+The scenes are those of `scenes.py` and `glass_scenes.py`, beside this file; `--peers` names another folder with a `scenes.py`.
 
 Gonio makes `--seeds` independent images of `--spp` samples a pixel, Mitsuba 16, which are kept in OUT and used again.
 `SCENE@N` renders Mitsuba's depth N instead of 8: N - 1 reflections; `SCENE@direct` compares Gonio's direct integrator with
@@ -177,7 +176,7 @@ def compare(name, ours, theirs, seconds, args):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", default=["cornell", "cornell@direct", "ibl", "mesh", "mesh-gold", "lights", "veach"])
-    parser.add_argument("--peers", type=pathlib.Path, help="folder with scenes.py and its assets, for other scenes than those of glass")
+    parser.add_argument("--peers", type=pathlib.Path, default=pathlib.Path(__file__).parent, help="another folder with a scenes.py")
     parser.add_argument("--gonio", type=pathlib.Path, required=True, help="the release build of the command")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for scenes, images and maps")
     parser.add_argument("--seeds", type=int, default=16, help="images of Gonio, at least 2")
@@ -185,7 +184,7 @@ def main():
     parser.add_argument("--sampler", default="independent")
     args = parser.parse_args()
     args.work.mkdir(parents=True, exist_ok=True)
-    module = scenes_of(args.peers) if args.peers else None
+    module = scenes_of(args.peers)
     print(f"{'scene':16s} {'gonio':>9s} {'mitsuba':>9s} {'sigma':>7s} {'difference':>11s} {'pixels':>8s} {'blocks':>7s} {'rms':>6s}   spp/s of gonio, mitsuba [thousands]")
     passed = True
     for name in args.scenes:

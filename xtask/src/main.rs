@@ -3,6 +3,7 @@
 mod fuzz;
 mod house;
 mod links;
+mod peers;
 
 use std::process::ExitCode;
 
@@ -13,7 +14,9 @@ Usage: cargo xtask <job>
   files    no source file is longer than 600 lines
   links    documents link to files that exist; every page of the book is in its summary
   house    all of them
-  fuzz     run each fuzz target for --seconds N (60); needs a C++ compiler";
+  fuzz     run each fuzz target for --seconds N (60); needs a C++ compiler
+  bench peers [scenes] [error] [start] [rays]
+           speed and error beside Mitsuba 3 and Embree 4, in one run; installs both with pip under target/peers";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -29,6 +32,7 @@ fn main() -> ExitCode {
             Ok(seconds) if seconds > 0 => fuzz::run(seconds),
             _ => Err(format!("`{n}` seconds: expected a whole number from 1")),
         },
+        ["bench", "peers", ref parts @ ..] => peers::run(parts),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
             Ok(())
