@@ -408,6 +408,7 @@ fn our_renderer_takes_the_same_photograph() {
             samples: 16,
             time: None,
             noise: None,
+            adaptive: false,
         },
         filter: PixelFilter::Box,
         ..RenderOptions::default()

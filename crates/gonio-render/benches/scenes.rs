@@ -15,7 +15,7 @@ use gonio_image::Image;
 use gonio_num::{Affine3, Vec3};
 use gonio_radiometry::sequence::SamplerKind;
 use gonio_render::integrator::Path;
-use gonio_render::{Integrator, Kept, PixelFilter, RenderOptions, Target, render};
+use gonio_render::{Integrator, Kept, PixelFilter, RenderOptions, Screen, Target, render};
 use gonio_scene::{Camera, Material, Scene, SceneBuilder, Shape, TriangleMesh};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -157,6 +157,7 @@ fn options(side: u32, samples: u32) -> RenderOptions {
             samples,
             time: None,
             noise: None,
+            adaptive: false,
         },
         integrator: Integrator::Path(Path {
             max_bounces: 7,
@@ -164,6 +165,7 @@ fn options(side: u32, samples: u32) -> RenderOptions {
             ..Path::default()
         }),
         sampler: SamplerKind::Sobol,
+        screen: Screen::INDEPENDENT,
         filter: PixelFilter::Box,
         seed: 0,
         keep: Kept::NOTHING,

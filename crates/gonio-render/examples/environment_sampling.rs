@@ -88,6 +88,7 @@ fn picture(scene: &Scene, environment: EnvironmentSampling, samples: u32, seed: 
             samples,
             time: None,
             noise: None,
+            adaptive: false,
         },
         integrator: Integrator::Path(Path {
             environment,

@@ -153,6 +153,10 @@ impl Film {
     pub fn samples_per_pixel(&self) -> u32 {
         self.pixels.iter().map(|p| p.samples).max().unwrap_or(0)
     }
+    /// Samples of all pixels.
+    pub fn samples(&self) -> u64 {
+        self.pixels.iter().map(|p| u64::from(p.samples)).sum()
+    }
 
     /// The rows, which different threads may write.
     pub(crate) fn rows_mut(&mut self) -> Vec<FilmRow<'_>> {

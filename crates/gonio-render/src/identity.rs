@@ -9,7 +9,8 @@ use std::fmt;
 /// What decides the value of every sample of a picture: the program's version, the scene, the camera and the settings, each as a name and
 /// a text.
 ///
-/// Two films may be added if their identities are equal. The number of samples is no part of it, nor when to stop.
+/// Two films may be added if their identities are equal. The number of samples is no part of it, nor when to stop, unless that is decided pixel
+/// by pixel.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Identity(BTreeMap<String, String>);
@@ -40,6 +41,7 @@ impl fmt::Display for Mismatch {
 /// The name of the scene's hash among the properties.
 const SCENE: &str = "scene";
 const VERSION: &str = "version";
+const ADAPTIVE: &str = "adaptive";
 const LAYERS: &str = "layers";
 
 impl Identity {
@@ -51,9 +53,10 @@ impl Identity {
         let RenderOptions {
             width,
             height,
-            target: _,
+            target,
             integrator,
             sampler,
+            screen,
             filter,
             seed,
             keep,
@@ -76,7 +79,15 @@ impl Identity {
             ("seed", seed.to_string()),
             (LAYERS, keep.to_string()),
         ];
-        Self(properties.map(|(k, v)| (k.to_owned(), v)).into())
+        let mut all = BTreeMap::from(properties.map(|(k, v)| (k.to_owned(), v)));
+        if !screen.is_independent() {
+            all.insert("screen".to_owned(), format!("{screen:?}"));
+        }
+        // What a pixel is judged by decides which samples it has.
+        if let (true, Some(noise)) = (target.adaptive, target.noise) {
+            all.insert(ADAPTIVE.to_owned(), format!("to a noise of {noise}"));
+        }
+        Self(all)
     }
 
     /// The properties, sorted by name.
@@ -84,8 +95,8 @@ impl Identity {
         self.0.iter().map(|(k, v)| (k.as_str(), v.as_str()))
     }
 
-    /// The value of a property: `version`, `scene`, `size`, `camera`, `integrator`, `sampler`, `filter`, `seed`, `layers`; nothing if there
-    /// is none of this name.
+    /// The value of a property: `version`, `scene`, `size`, `camera`, `integrator`, `sampler`, `filter`, `seed`, `layers`, and `adaptive` and
+    /// `screen` where pixels aren't sampled one like the other and each by itself; nothing if there is none of this name.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.get(name).map(String::as_str)
     }
@@ -141,6 +152,24 @@ mod tests {
             width: 64,
             ..options
         };
+        let adaptive = |noise| RenderOptions {
+            target: Target {
+                noise: Some(noise),
+                adaptive: true,
+                ..options.target
+            },
+            ..options
+        };
+        assert_eq!(
+            other("ab", 2.0, &adaptive(0.1)).as_deref(),
+            Some("adaptive")
+        );
+        let coarse = Identity::new("ab", &camera(2.0), &adaptive(0.1));
+        let fine = Identity::new("ab", &camera(2.0), &adaptive(0.05));
+        assert_eq!(
+            coarse.mismatch(&fine).map(|m| m.what).as_deref(),
+            Some("adaptive")
+        );
         let direct = RenderOptions {
             integrator: crate::Integrator::Direct(crate::integrator::Direct::default()),
             ..options

@@ -11,6 +11,7 @@
 //! An image is the same to the last bit for any number of threads, any split into parts and any number of interruptions: sample k of a
 //! pixel is a function of (seed, pixel, k) alone, and the sums of a pixel are functions of the set of its samples.
 
+mod adaptive;
 mod error;
 pub mod film;
 pub mod filter;
@@ -19,6 +20,7 @@ pub mod integrator;
 pub mod part;
 mod pass;
 mod render;
+mod screen;
 pub mod sensor;
 
 pub use error::RenderError;
@@ -28,3 +30,4 @@ pub use identity::{Identity, Mismatch};
 pub use integrator::{Integrator, RayCounts, direct, path};
 pub use part::{Exposure, Parts};
 pub use render::{Progress, RenderOptions, Stop, Target, expose, render};
+pub use screen::Screen;

@@ -51,7 +51,7 @@ const LARGEST_HEADER: u32 = 1 << 26;
 pub struct Exposure {
     /// The sums.
     pub film: Film,
-    /// The indices of the samples that every pixel has.
+    /// The indices of the samples that every pixel has; at most, where they are taken adaptively: those of a pixel are the first ones.
     pub samples: Range<u32>,
     /// Rays that were followed.
     pub rays: RayCounts,

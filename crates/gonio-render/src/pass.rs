@@ -1,4 +1,4 @@
-//! [`take_pass`]: a range of samples of every pixel.
+//! [`take_pass`]: a range of samples of every pixel, or as many more of some.
 
 use crate::film::{Film, FilmRow, Place, Rejected};
 use crate::integrator::dimension;
@@ -9,14 +9,55 @@ use gonio_num::{Vec3, Vectors};
 use gonio_radiometry::sequence::{SampleStream, SampleStreams, SamplerKind};
 use gonio_scene::{Camera, Interior, Ray, Scene};
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// Adds the samples `range` to every pixel.
+/// Which samples a pass takes.
+#[derive(Debug, Clone)]
+pub(crate) enum Wanted<'a> {
+    /// These of every pixel.
+    All(Range<u32>),
+    /// The next `count` of some pixels, up to and without the sample `end`.
+    Of {
+        /// For each pixel, row after row.
+        pixels: &'a [bool],
+        /// Index of the first sample that a pixel has.
+        first: u32,
+        count: u32,
+        end: u32,
+    },
+}
+
+impl Wanted<'_> {
+    /// The samples of the pixel at `place` in the picture, which has `done` of them.
+    fn of(&self, place: usize, done: u32) -> Range<u32> {
+        match self {
+            Self::All(range) => range.clone(),
+            Self::Of { pixels, .. } if !pixels[place] => 0..0,
+            Self::Of {
+                first, count, end, ..
+            } => {
+                let next = first + done;
+                next..next.saturating_add(*count).min(*end)
+            }
+        }
+    }
+
+    /// Those of each pixel of row `y`.
+    pub fn of_row(&self, y: u32, row: &FilmRow<'_>) -> Vec<Range<u32>> {
+        let before = y as usize * row.len();
+        (0..row.len())
+            .map(|x| self.of(before + x, row.samples(x)))
+            .collect()
+    }
+}
+
+/// Adds samples to the pixels.
 pub(crate) fn take_pass(
     scene: &Scene,
     camera: &Camera,
     options: &RenderOptions,
     film: &mut Film,
-    range: std::ops::Range<u32>,
+    wanted: &Wanted<'_>,
 ) -> RayCounts {
     let split = Split::new(&film.kept(), &scene.lights);
     let plan = Plan::new(scene, &options.integrator, &split);
@@ -27,10 +68,10 @@ pub(crate) fn take_pass(
         .map_init(
             || plan.as_ref().map(Row::new),
             |waves, (y, mut row)| match waves {
-                Some(waves) => waves.take(camera, options, y as u32, &mut row, range.clone()),
+                Some(waves) => waves.take(camera, options, y as u32, &mut row, wanted),
                 None => {
                     let shot = (scene, camera, options, &split);
-                    take_row(shot, y as u32, &mut row, range.clone())
+                    take_row(shot, y as u32, &mut row, wanted)
                 }
             },
         )
@@ -48,14 +89,14 @@ fn take_row(
     (scene, camera, options, split): (&Scene, &Camera, &RenderOptions, &Split),
     y: u32,
     row: &mut FilmRow<'_>,
-    range: std::ops::Range<u32>,
+    wanted: &Wanted<'_>,
 ) -> (RayCounts, Rejected) {
     let mut counts = RayCounts::default();
     let mut rejected = Rejected::default();
     let mut around = Surroundings::of(scene);
     let mut values = vec![[0.0; 3]; split.count()];
-    for x in 0..row.len() as u32 {
-        for index in range.clone() {
+    for (x, range) in (0..).zip(wanted.of_row(y, row)) {
+        for index in range {
             let shot = camera_ray(camera, options, [x, y], index);
             let interior = around.at(shot.ray.origin);
             values.fill([0.0; 3]);
@@ -117,12 +158,13 @@ impl<'a> Row<'a> {
         options: &RenderOptions,
         y: u32,
         row: &mut FilmRow<'_>,
-        range: std::ops::Range<u32>,
+        wanted: &Wanted<'_>,
     ) -> (RayCounts, Rejected) {
         let mut counts = RayCounts::default();
         let mut rejected = Rejected::default();
         self.streams = SampleStreams::new(options.sampler);
-        let places = (0..row.len() as u32).flat_map(|x| range.clone().map(move |k| (x, k)));
+        let ranges = (0..).zip(wanted.of_row(y, row));
+        let places = ranges.flat_map(|(x, range)| range.map(move |k| (x, k)));
         let mut places = places.peekable();
         while places.peek().is_some() {
             self.places.clear();
@@ -147,7 +189,8 @@ impl<'a> Row<'a> {
         let (width, height) = (options.width, options.height);
         self.streams.clear();
         for &(x, k) in &self.places {
-            let stream = SampleStream::new(options.sampler, options.seed, y * width + x, k);
+            let (sequence, index) = options.screen.place(width, [x, y], k);
+            let stream = SampleStream::new(options.sampler, options.seed, sequence, index);
             self.streams.push(&stream);
         }
         for column in (self.offset.iter_mut())
@@ -183,11 +226,11 @@ struct Shot {
     off_centre: f32,
 }
 
-/// Sample `k` of `pixel`: a function of (seed, pixel, k) alone.
+/// Sample `k` of `pixel`: a function of (seed, pixel, k) and the options alone.
 fn camera_ray(camera: &Camera, options: &RenderOptions, pixel: [u32; 2], k: u32) -> Shot {
     let (width, height) = (options.width, options.height);
-    let index = pixel[1] * width + pixel[0];
-    let mut stream = SampleStream::new(options.sampler, options.seed, index, k);
+    let (sequence, index) = options.screen.place(width, pixel, k);
+    let mut stream = SampleStream::new(options.sampler, options.seed, sequence, index);
     let offset = options.filter.sample(stream.next_2d());
     let lens = stream.next_2d();
     let on_film = [
@@ -404,14 +447,15 @@ mod tests {
             let split = Split::new(&kept, &scene.lights);
             let plan = Plan::new(&scene, &options.integrator, &split).unwrap();
             let mut waves = Row::new(&plan);
+            let wanted = Wanted::All(3..10);
             let mut lit = 0;
             assert_eq!(kept.groups, 3);
             for y in 0..options.height {
                 let mut one = Film::keeping(kept, options.width, 1).unwrap();
                 let mut many = one.clone();
                 let shot = (&scene, &camera, &options, &split);
-                let alone = take_row(shot, y, &mut one.rows_mut()[0], 3..10);
-                let together = waves.take(&camera, &options, y, &mut many.rows_mut()[0], 3..10);
+                let alone = take_row(shot, y, &mut one.rows_mut()[0], &wanted);
+                let together = waves.take(&camera, &options, y, &mut many.rows_mut()[0], &wanted);
                 assert_eq!(alone, together, "{guide:?}, row {y}");
                 assert_eq!(one, many, "{guide:?}, row {y}");
                 lit += one.pixels().iter().filter(|p| p.mean()[0] > 0.0).count();

@@ -1,8 +1,9 @@
 //! [`render`]: a picture, pass by pass.
 
+use crate::adaptive::{self, Active};
 use crate::film::{Film, Kept};
-use crate::pass::take_pass;
-use crate::{Exposure, Integrator, PixelFilter, RayCounts, RenderError};
+use crate::pass::{Wanted, take_pass};
+use crate::{Exposure, Integrator, PixelFilter, RayCounts, RenderError, Screen};
 use gonio_radiometry::sequence::SamplerKind;
 use gonio_scene::{Camera, Scene};
 use std::ops::ControlFlow;
@@ -17,6 +18,9 @@ pub struct Target {
     pub time: Option<Duration>,
     /// Noise, [`Film::noise`]: 0.02 is 2 %.
     pub noise: Option<f64>,
+    /// Whether to go on, after 32 samples of all pixels, with those alone whose neighbourhood is noisier than the target. A pixel's own
+    /// samples have no part in whether it goes on, which would make the picture too dark (Kirk & Arvo 1991).
+    pub adaptive: bool,
 }
 
 /// How a picture is taken.
@@ -32,6 +36,8 @@ pub struct RenderOptions {
     pub integrator: Integrator,
     /// Which sequence the samples come from.
     pub sampler: SamplerKind,
+    /// How the samples of different pixels relate to each other.
+    pub screen: Screen,
     /// The pixel filter.
     pub filter: PixelFilter,
     /// Seed of the sequence.
@@ -49,9 +55,11 @@ impl Default for RenderOptions {
                 samples: 64,
                 time: None,
                 noise: None,
+                adaptive: false,
             },
             integrator: Integrator::default(),
             sampler: SamplerKind::Sobol,
+            screen: Screen::INDEPENDENT,
             filter: PixelFilter::default(),
             seed: 0,
             keep: Kept::NOTHING,
@@ -88,19 +96,19 @@ pub enum Stop {
     Interrupted,
 }
 
-/// Samples of every pixel in one pass, the unit between two looks at the noise. Passes double from 1, so that a first
-/// picture is there at once, up to this many.
-const LARGEST_PASS: u32 = 16;
+/// Samples of every pixel in one pass, the unit between two looks at the noise. A pass takes as many samples as there are, so that a first
+/// picture is there at once, up to this many: the numbers of samples after passes are those that Sobol' points are most even at.
+const LARGEST_PASS: u32 = adaptive::PASS;
 /// A pass that takes longer than this is done in pieces, with a look at the clock and at the user's wishes after each. The
 /// noise is judged after whole passes alone: where it ends a rendering does not depend on the machine's speed.
 const LONGEST_PIECE: Duration = Duration::from_secs(1);
 /// Stopping by noise needs this many samples before it trusts its own estimate.
-const LEAST_SAMPLES_FOR_NOISE: u32 = 16;
+const LEAST_SAMPLES_FOR_NOISE: u32 = adaptive::BASE;
 
 /// Takes a picture of `scene` through `camera`, on the threads of the current rayon pool.
 ///
 /// `progress` is called after each pass with what was done and the film so far; `ControlFlow::Break` ends the rendering
-/// early. The film it leaves is whole: every pixel has the same number of samples.
+/// early. The film it leaves is whole: every pixel has the same number of samples, if they are not taken adaptively.
 ///
 /// The same options give the same bits on any number of threads. A target of time or noise only decides *how many* samples
 /// are taken.
@@ -137,62 +145,120 @@ pub fn expose(
     options.keep.check(scene.lights.groups().len())?;
     let target = options.target;
     let (start, before) = (Instant::now(), exposure.elapsed);
-    let (first, went_on_from) = (exposure.samples.start, exposure.samples.end);
-    let mut pass_ends = first.saturating_add(end_of_pass(went_on_from - first));
-    let mut piece = 1;
-    let quiet = |exposure: &Exposure, noise: f64| {
-        let done = exposure.samples.end - first;
-        done >= LEAST_SAMPLES_FOR_NOISE
-            && done == start_of_pass(done)
-            && target.noise.is_some_and(|n| noise <= n)
-    };
-    let stop = |exposure: &Exposure, noise: f64| {
-        if exposure.samples.end == target.samples {
+    let (first, taken_before) = (exposure.samples.start, exposure.film.samples());
+    let stop = |exposure: &Exposure, noise: f64, next: &Next| {
+        let whole = matches!(next, Next::Pass { begun: false, .. });
+        if matches!(next, Next::Nothing) {
             Some(Stop::Samples)
-        } else if quiet(exposure, noise) {
+        } else if whole
+            && exposure.samples.end - first >= LEAST_SAMPLES_FOR_NOISE
+            && target.noise.is_some_and(|n| noise <= n)
+        {
             Some(Stop::Noise)
         } else {
             let late = target.time.is_some_and(|t| exposure.elapsed >= t);
             late.then_some(Stop::Time)
         }
     };
+    let mut next = next_pass(exposure, &target);
     if !exposure.samples.is_empty()
-        && let Some(stop) = stop(exposure, exposure.film.noise())
+        && let Some(stop) = stop(exposure, exposure.film.noise(), &next)
     {
         return Ok(stop);
     }
-    loop {
+    let mut piece = 1;
+    while let Next::Pass { active, left, .. } = &next {
+        let count = piece.min(*left);
         let done = exposure.samples.end;
-        let until = done
-            .saturating_add(piece)
-            .min(pass_ends)
-            .min(target.samples);
-        exposure.rays += take_pass(scene, camera, options, &mut exposure.film, done..until);
-        exposure.samples.end = until;
+        let wanted = match active {
+            None => Wanted::All(done..done + count),
+            Some(pixels) => Wanted::Of {
+                pixels,
+                first,
+                count,
+                end: target.samples,
+            },
+        };
+        exposure.rays += take_pass(scene, camera, options, &mut exposure.film, &wanted);
+        exposure.samples.end = first + exposure.film.samples_per_pixel();
         exposure.elapsed = before + start.elapsed();
-        if until == pass_ends {
-            pass_ends = first.saturating_add(end_of_pass(until - first));
-        }
+        let share = match active {
+            None => 1.0,
+            Some(pixels) => pixels.iter().filter(|p| **p).count() as f64 / pixels.len() as f64,
+        };
         let report = Progress {
-            samples: until - first,
+            samples: exposure.samples.end - first,
             of: target.samples - first,
             rays: exposure.rays,
             elapsed: exposure.elapsed,
             noise: exposure.film.noise(),
         };
         let asked = progress(&report, exposure);
-        match stop(exposure, report.noise) {
+        next = match next {
+            Next::Pass { active, left, .. } if count < left => Next::Pass {
+                active,
+                left: left - count,
+                begun: true,
+            },
+            _ => next_pass(exposure, &target),
+        };
+        match stop(exposure, report.noise, &next) {
             Some(stop @ Stop::Samples) => return Ok(stop),
             _ if asked.is_break() => return Ok(Stop::Interrupted),
             Some(stop) => return Ok(stop),
             None => {}
         }
         let left = target.time.map(|t| t.saturating_sub(report.elapsed));
+        let taken =
+            (exposure.film.samples() - taken_before) as f64 / exposure.film.pixels().len() as f64;
         piece = samples_within(
             left.unwrap_or(LONGEST_PIECE),
-            until - went_on_from,
+            taken / share,
             start.elapsed(),
         );
+    }
+    Ok(Stop::Samples)
+}
+
+/// What a rendering does next.
+#[derive(Debug)]
+enum Next {
+    /// All samples are taken.
+    Nothing,
+    Pass {
+        /// The pixels that take part; none named: all of them.
+        active: Option<Vec<bool>>,
+        /// Samples to its end.
+        left: u32,
+        /// Whether some of it is done.
+        begun: bool,
+    },
+}
+
+/// What comes next is a function of the film and the target: an interruption leaves no trace.
+fn next_pass(exposure: &Exposure, target: &Target) -> Next {
+    let taken = &exposure.samples;
+    let done = taken.end - taken.start;
+    let most = target.samples - taken.start;
+    if let (true, Some(noise)) = (target.adaptive && done >= adaptive::BASE, target.noise) {
+        let Active { pixels, left } = adaptive::active(&exposure.film, noise, most);
+        if !pixels.contains(&true) {
+            return Next::Nothing;
+        }
+        return Next::Pass {
+            active: Some(pixels),
+            left,
+            begun: left < adaptive::PASS,
+        };
+    }
+    let end = end_of_pass(done).min(most);
+    if end == done {
+        return Next::Nothing;
+    }
+    Next::Pass {
+        active: None,
+        left: end - done,
+        begun: done > 0 && !ends_a_pass(done),
     }
 }
 
@@ -229,6 +295,27 @@ fn check(options: &RenderOptions, exposure: &Exposure) -> Result<(), RenderError
             "a positive relative error such as 0.02",
         );
     }
+    if target.adaptive && target.noise.is_none() {
+        return fault(
+            "adaptive",
+            "no target of noise".into(),
+            "one: it is what pixels are judged by",
+        );
+    }
+    if target.adaptive && taken.start > 0 {
+        return fault(
+            "adaptive",
+            format!("samples from {} on", taken.start),
+            "all of them: which pixels go on depends on the samples before",
+        );
+    }
+    if target.adaptive && !options.screen.is_independent() {
+        return fault(
+            "adaptive",
+            "pixels that share a sequence".into(),
+            "pixels that are independent of each other",
+        );
+    }
     let film = &exposure.film;
     if (film.width(), film.height()) != (options.width, options.height) {
         return fault(
@@ -243,32 +330,25 @@ fn check(options: &RenderOptions, exposure: &Exposure) -> Result<(), RenderError
     Ok(())
 }
 
-/// The number of samples at the end of the pass in which sample `k` is taken: 1, 3, 7, 15, then 16 more each time.
+/// The number of samples at the end of the pass in which sample `k` is taken: 1, 2, 4, 8, 16, then 16 more each time.
 fn end_of_pass(k: u32) -> u32 {
-    const DOUBLING: u32 = LARGEST_PASS - 1;
-    if k < DOUBLING {
-        (k + 2).next_power_of_two().max(2) - 1
+    if k < LARGEST_PASS {
+        (k + 1).next_power_of_two()
     } else {
-        let more = (k - DOUBLING) / LARGEST_PASS + 1;
-        DOUBLING.saturating_add(more.saturating_mul(LARGEST_PASS))
+        (k / LARGEST_PASS + 1).saturating_mul(LARGEST_PASS)
     }
 }
 
-/// The number of samples at the beginning of that pass: `k` itself, if a pass ends before it.
-fn start_of_pass(k: u32) -> u32 {
-    const DOUBLING: u32 = LARGEST_PASS - 1;
-    if k < DOUBLING {
-        end_of_pass(k) / 2
-    } else {
-        DOUBLING + (k - DOUBLING) / LARGEST_PASS * LARGEST_PASS
-    }
+/// Whether a pass ends with `done` samples.
+fn ends_a_pass(done: u32) -> bool {
+    done > 0 && end_of_pass(done - 1) == done
 }
 
 /// Samples that fit into `left`, and into the longest piece, at the pace of `done` samples in `elapsed`; at least one.
-fn samples_within(left: Duration, done: u32, elapsed: Duration) -> u32 {
+fn samples_within(left: Duration, done: f64, elapsed: Duration) -> u32 {
     let seconds = left.min(LONGEST_PIECE).as_secs_f64();
     // A conversion to an integer saturates, for a pace that is too fast to measure as well.
-    ((seconds * f64::from(done) / elapsed.as_secs_f64()) as u32).max(1)
+    ((seconds * done / elapsed.as_secs_f64()) as u32).max(1)
 }
 
 #[cfg(test)]
@@ -280,28 +360,27 @@ mod tests {
         let mut ends = vec![0];
         while ends[ends.len() - 1] < 60 {
             let done = ends[ends.len() - 1];
-            assert_eq!(start_of_pass(done), done);
             ends.push(end_of_pass(done));
         }
-        assert_eq!(ends, [0, 1, 3, 7, 15, 31, 47, 63]);
+        assert_eq!(ends, [0, 1, 2, 4, 8, 16, 32, 48, 64]);
         // Within a pass as at its beginning.
         for k in 0..60 {
             let end = ends.iter().copied().find(|e| *e > k).unwrap();
-            let start = ends.iter().copied().rfind(|e| *e <= k).unwrap();
-            assert_eq!((start_of_pass(k), end_of_pass(k)), (start, end), "{k}");
+            assert_eq!(end_of_pass(k), end, "{k}");
+            assert_eq!(ends_a_pass(k), k > 0 && ends.contains(&k), "{k}");
         }
-        assert_eq!(end_of_pass(u32::MAX), u32::MAX);
+        assert!(end_of_pass(u32::MAX) >= u32::MAX - LARGEST_PASS);
     }
 
     #[test]
     fn pieces_fit_the_time_that_is_left() {
         let seconds = Duration::from_secs_f64;
         // A hundred samples a second: one second at most.
-        assert_eq!(samples_within(seconds(60.0), 200, seconds(2.0)), 100);
-        assert_eq!(samples_within(seconds(0.25), 200, seconds(2.0)), 25);
+        assert_eq!(samples_within(seconds(60.0), 200.0, seconds(2.0)), 100);
+        assert_eq!(samples_within(seconds(0.25), 200.0, seconds(2.0)), 25);
         // Slower than that, and out of time: one.
-        assert_eq!(samples_within(seconds(60.0), 1, seconds(9.0)), 1);
-        assert_eq!(samples_within(seconds(0.0), 200, seconds(2.0)), 1);
-        assert_eq!(samples_within(seconds(60.0), 1, seconds(0.0)), u32::MAX);
+        assert_eq!(samples_within(seconds(60.0), 1.0, seconds(9.0)), 1);
+        assert_eq!(samples_within(seconds(0.0), 200.0, seconds(2.0)), 1);
+        assert_eq!(samples_within(seconds(60.0), 1.0, seconds(0.0)), u32::MAX);
     }
 }

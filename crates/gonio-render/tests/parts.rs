@@ -72,6 +72,7 @@ fn until(end: u32) -> RenderOptions {
         samples: end,
         time: None,
         noise: None,
+        adaptive: false,
     };
     RenderOptions {
         target,
@@ -182,6 +183,7 @@ fn noise_stops_it_at_the_same_sample() {
         samples: 1 << 20,
         time: None,
         noise: Some(0.2),
+        adaptive: false,
     };
     let options = RenderOptions {
         target,

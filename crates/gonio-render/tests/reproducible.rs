@@ -100,19 +100,20 @@ fn an_interrupted_image_is_the_one_with_fewer_samples() {
     let camera = camera_above(6.0, 30.0);
     for scene in [scene(), glass()] {
         let (stopped, stop) = render(&scene, &camera, &full, |p, _| {
-            if p.samples >= 7 {
+            if p.samples >= 8 {
                 ControlFlow::Break(())
             } else {
                 ControlFlow::Continue(())
             }
         })
         .unwrap();
-        assert_eq!((stop, stopped.samples_per_pixel()), (Stop::Interrupted, 7));
+        assert_eq!((stop, stopped.samples_per_pixel()), (Stop::Interrupted, 8));
         let fewer = RenderOptions {
             target: Target {
-                samples: 7,
+                samples: 8,
                 time: None,
                 noise: None,
+                adaptive: false,
             },
             ..full
         };
@@ -130,6 +131,7 @@ fn the_targets_stop_it() {
             samples: 1 << 20,
             time,
             noise,
+            adaptive: false,
         },
         ..base
     };
@@ -152,6 +154,7 @@ fn the_targets_stop_it() {
             samples: 0,
             time: None,
             noise: None,
+            adaptive: false,
         },
         ..base
     };

@@ -42,6 +42,7 @@ pub fn sphere(size: u32, samples: u32) -> Result<Film, Box<dyn Error>> {
             samples,
             time: None,
             noise: None,
+            adaptive: false,
         },
         ..RenderOptions::default()
     };

@@ -31,6 +31,11 @@ impl FilmRow<'_> {
         self.pixels.len()
     }
 
+    /// Samples that pixel `x` has.
+    pub fn samples(&self, x: usize) -> u32 {
+        self.pixels[x].samples
+    }
+
     /// Adds a sample to its pixel, unless a channel is negative or not finite: then it counts as a sample of no light and
     /// is reported. That keeps the image finite without hiding the fault.
     ///

@@ -8,7 +8,7 @@ use gonio_env::Environment;
 use gonio_num::{Affine3, Vec3};
 use gonio_radiometry::sequence::SamplerKind;
 use gonio_render::integrator::{Direct, EnvironmentSampling, Path};
-use gonio_render::{Film, Integrator, Kept, PixelFilter, RenderOptions, Target, render};
+use gonio_render::{Film, Integrator, Kept, PixelFilter, RenderOptions, Screen, Target, render};
 use gonio_scene::{Camera, Light, Material, Scene, SceneBuilder, Shape};
 use gonio_verify::statistics::{Moments, t_test};
 use std::ops::ControlFlow;
@@ -97,9 +97,11 @@ pub fn options(integrator: Integrator, sampler: SamplerKind, side: u32, spp: u32
             samples: spp,
             time: None,
             noise: None,
+            adaptive: false,
         },
         integrator,
         sampler,
+        screen: Screen::INDEPENDENT,
         filter: PixelFilter::Box,
         seed: 7,
         keep: Kept::NOTHING,

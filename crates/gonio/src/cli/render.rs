@@ -21,7 +21,8 @@ use gonio_radiometry::sequence::SamplerKind;
 use gonio_render::integrator::{Direct, EnvironmentSampling, Path as PathTracer};
 use gonio_render::part::Label;
 use gonio_render::{
-    Exposure, Identity, Integrator, Kept, Names, PixelFilter, Rejected, RenderOptions, Stop, Target,
+    Exposure, Identity, Integrator, Kept, Names, PixelFilter, Rejected, RenderOptions, Screen,
+    Stop, Target,
 };
 use gonio_scene::{Camera, NO_GROUP, Scene};
 use live::{Live, LiveArguments};
@@ -98,6 +99,13 @@ pub(super) struct Arguments {
     /// Stop when 95 % of the pixels have a relative error below this: 2%
     #[arg(long, value_name = "ERROR", value_parser = parse::fraction, allow_hyphen_values = true, help_heading = "How long: ends at the first of these")]
     noise: Option<f64>,
+    /// With --noise: after 32 samples of every pixel go on with those alone whose neighbourhood is noisier than asked for
+    #[arg(
+        long,
+        requires = "noise",
+        help_heading = "How long: ends at the first of these"
+    )]
+    adaptive: bool,
     /// Take these samples alone, counted from 0, END not among them: a part of the picture, see 'gonio merge'
     #[arg(long, value_name = "FIRST:END", value_parser = range::samples, conflicts_with_all = ["part", "time", "noise"], help_heading = "Parts and interruptions")]
     samples: Option<Range<u32>>,
@@ -130,8 +138,9 @@ pub(super) struct Arguments {
     /// Reflections that light may make, passages through surfaces included, for the path integrator
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = parse::whole(0, u32::MAX), allow_hyphen_values = true, help_heading = "Method")]
     max_bounces: u32,
-    /// Where samples come from: Owen-scrambled Sobol' points, or independent random numbers
-    #[arg(long, value_enum, value_name = "NAME", default_value_t = SamplerName::Sobol, help_heading = "Method")]
+    /// Where samples come from: Owen-scrambled Sobol' points of every pixel (sobol), or of the whole picture, so that the error after --spp samples is
+    /// blue noise (blue-noise), or independent random numbers
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = SamplerName::Sobol, requires_if("blue-noise", "spp"), help_heading = "Method")]
     sampler: SamplerName,
     /// What a pixel averages over
     #[arg(long, value_name = "NAME", default_value = "blackman-harris", value_parser = parse::pixel_filter(), help_heading = "Method")]
@@ -171,6 +180,7 @@ enum EnvSamplingName {
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
 enum SamplerName {
     Sobol,
+    BlueNoise,
     Independent,
 }
 
@@ -271,6 +281,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         width: options.width,
         height: options.height,
         samples_per_pixel: film.samples_per_pixel(),
+        mean_samples_per_pixel: film.samples() as f64 / film.pixels().len() as f64,
         samples: [exposure.samples.start, exposure.samples.end],
         seconds: exposure.elapsed.as_secs_f64(),
         rays: exposure.rays.total(),
@@ -309,6 +320,7 @@ impl Arguments {
             ("--checkpoint", self.checkpoint.checkpoint.is_some()),
             ("--time", self.time.is_some()),
             ("--noise", self.noise.is_some()),
+            ("--adaptive", self.adaptive),
             ("--threads", self.threads.is_some()),
         ];
         if let Some((name, _)) = given.iter().find(|(_, given)| *given) {
@@ -438,6 +450,7 @@ fn options(arguments: &Arguments, scene: &Scene, range: &Range<u32>) -> RenderOp
             samples: range.end,
             time: arguments.time,
             noise: arguments.noise,
+            adaptive: arguments.adaptive,
         },
         integrator: match arguments.integrator {
             IntegratorName::Direct => Integrator::Direct(Direct {
@@ -450,8 +463,12 @@ fn options(arguments: &Arguments, scene: &Scene, range: &Range<u32>) -> RenderOp
             }),
         },
         sampler: match arguments.sampler {
-            SamplerName::Sobol => SamplerKind::Sobol,
+            SamplerName::Sobol | SamplerName::BlueNoise => SamplerKind::Sobol,
             SamplerName::Independent => SamplerKind::Independent,
+        },
+        screen: match (arguments.sampler, arguments.spp) {
+            (SamplerName::BlueNoise, Some(samples)) => Screen::blue_noise(samples),
+            _ => Screen::INDEPENDENT,
         },
         filter: arguments.filter,
         seed: arguments.seed,

@@ -11,7 +11,9 @@ pub(super) struct Summary<'a> {
     pub outputs: Vec<&'a PathBuf>,
     pub width: u32,
     pub height: u32,
+    /// Of the pixel that has most.
     pub samples_per_pixel: u32,
+    pub mean_samples_per_pixel: f64,
     /// The index of the first sample and that after the last.
     pub samples: [u32; 2],
     /// Of all runs that contributed.
@@ -48,12 +50,19 @@ impl Summary<'_> {
 
     /// The lines that end a rendering.
     pub fn in_words(&self) -> String {
+        let most = self.samples_per_pixel;
+        let samples = if self.mean_samples_per_pixel < f64::from(most) {
+            format!(
+                "{:.1} samples in the mean and {most} at most",
+                self.mean_samples_per_pixel
+            )
+        } else {
+            format!("{most} sample{} each", if most == 1 { "" } else { "s" })
+        };
         let mut text = format!(
-            "{}×{} pixels, {} sample{} each, {} rays in {:.1} s ({} rays/s), noise {}\n",
+            "{}×{} pixels, {samples}, {} rays in {:.1} s ({} rays/s), noise {}\n",
             self.width,
             self.height,
-            self.samples_per_pixel,
-            if self.samples_per_pixel == 1 { "" } else { "s" },
             quantity(self.rays as f64),
             self.seconds,
             quantity(self.rays as f64 / self.seconds.max(1e-9)),

@@ -152,6 +152,49 @@ fn the_summary_as_json() {
     );
 }
 
+/// Samples where the noise is: some pixels of the ball have more than others, and the summary says so. What it can't be joined with is an error.
+#[test]
+fn pixels_go_on_where_the_noise_is() {
+    let place = Place::new();
+    let arguments = [
+        "render",
+        "--size",
+        "24x16",
+        "--noise",
+        "20%",
+        "--adaptive",
+        "-o",
+        "a.exr",
+    ];
+    let summary = place.json(&[&arguments[..], &["--json"]].concat());
+    let mean = summary["mean_samples_per_pixel"].as_f64().unwrap();
+    let most = summary["samples_per_pixel"].as_f64().unwrap();
+    assert!(32.0 < mean && mean < most, "{summary}");
+    assert!(summary["noise"].as_f64().unwrap() <= 0.2 && summary["stopped_by"] == "noise");
+    let said = place.good(&arguments);
+    assert!(said.out.contains("samples in the mean and"), "{said:?}");
+    place.bad(&["render", "--adaptive"], 2, &["--noise"]);
+    for part in [["--samples", "0:8"], ["--part", "0/2"]] {
+        let both = [&arguments[..], &part].concat();
+        place.bad(&both, 2, &[part[0], "--noise"]);
+    }
+    let shared = [&arguments[..], &["--sampler", "blue-noise", "--spp", "64"]].concat();
+    place.bad(&shared, 2, &["adaptive", "share a sequence"]);
+}
+
+/// Error as blue noise needs to know the number of samples, and is another picture.
+#[test]
+fn error_as_blue_noise() {
+    let place = Place::new();
+    place.good(&tiny(&["--sampler", "blue-noise", "-o", "blue.exr"]));
+    place.good(&tiny(&["-o", "own.exr"]));
+    assert_ne!(
+        place.image("blue.exr").pixels,
+        place.image("own.exr").pixels
+    );
+    place.bad(&["render", "--sampler", "blue-noise"], 2, &["--spp"]);
+}
+
 /// A shader that stops ending in the middle of a picture is named, with its loop.
 #[test]
 fn a_shader_that_does_not_end_is_named() {
