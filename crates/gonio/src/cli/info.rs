@@ -101,6 +101,7 @@ fn of_part(header: &Header) -> Map<String, Value> {
     add("rays", json!(header.rays.total()));
     add("seconds", json!(header.seconds));
     add("rejectedSamples", json!(rejected.count));
+    add("rejectedInLayers", json!(rejected.in_layers));
     if let Some(first) = &rejected.first {
         let words = rejected_in_words(first, &header.names.materials);
         add("firstRejectedSample", json!(words));

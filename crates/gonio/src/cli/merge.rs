@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::progress;
 use super::render::product::{PictureArguments, is_part, write_all};
 use super::render::strict;
-use super::summary::rejected_in_words;
+use super::summary::{faulty_shares, rejected_in_words};
 use super::terminal::{print, print_json, warn};
 use gonio_render::Parts;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -95,6 +95,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             rejected.count,
             rejected_in_words(first, &label.names.materials)
         ));
+    }
+    if let Some(text) = faulty_shares(rejected) {
+        warn(&text);
     }
     let samples = whole.samples.end - whole.samples.start;
     if arguments.json {

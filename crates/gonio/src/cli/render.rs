@@ -13,7 +13,7 @@ use super::environment::EnvironmentArguments;
 use super::failure::Failure;
 use super::parse;
 use super::progress::{self, ProgressKind, Telling};
-use super::summary::Summary;
+use super::summary::{Summary, faulty_shares};
 use super::terminal::{note, print, print_json, warn};
 use checkpoint::{Checkpoint, CheckpointArguments};
 use gonio_env::Candidates;
@@ -293,9 +293,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         warnings: &scene.warnings,
         notes: &notes,
     };
-    if let Some(text) = summary.rejected(&scene) {
-        warn(&text);
-    }
+    let faults = [
+        summary.rejected(&scene),
+        faulty_shares(summary.rejected_samples),
+    ];
+    faults.iter().flatten().for_each(|text| warn(text));
     if arguments.json {
         print_json(&summary)?;
     } else if !arguments.quiet {

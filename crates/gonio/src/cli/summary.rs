@@ -75,6 +75,19 @@ impl Summary<'_> {
     }
 }
 
+/// The warning of shares of light that could not enter their layers.
+pub(super) fn faulty_shares(rejected: &Rejected) -> Option<String> {
+    let count = match rejected.in_layers {
+        0 => return None,
+        1 => "one share of a sound sample was".to_owned(),
+        n => format!("{n} shares of sound samples were"),
+    };
+    Some(format!(
+        "{count} negative or not finite and is in no layer: layers don't quite add up to the picture, and a reflection function is faulty; \
+         'gonio brdf check' finds what is wrong with it"
+    ))
+}
+
 /// The place of a rejected sample, where the scene is not at hand.
 ///
 /// - `materials`: their names

@@ -176,6 +176,57 @@ fn merged_parts_have_the_layers_of_the_whole() {
     assert!(said.err.contains("c.gonio"), "{said:?}");
 }
 
+/// A function that is negative for light from one side, which the other side's makes up for: the picture is sound, a layer would not be.
+#[test]
+fn faulty_shares_are_counted_and_told() {
+    let place = Place::new();
+    place.write(
+        "bad.wgsl",
+        "fn eval(wi: vec3f, wo: vec3f) -> vec3f { return vec3f(select(0.3, -0.01, wi.x > 0.0)); }",
+    );
+    let light = |x: f32, group: &str| {
+        format!(
+            "[[light]]\nkind = \"directional\"\ndirection = [{x}, 0, -1]\nirradiance = 1\ngroup = \"{group}\"\n"
+        )
+    };
+    let wall = "[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n[[material]]\nname = \"odd\"\nmodel = \"bad.wgsl\"\n\
+                [[shape]]\nkind = \"rectangle\"\nmaterial = \"odd\"\nscale = 9\n";
+    let scene = place.write(
+        "wall.toml",
+        format!("{wall}{}{}", light(1.0, "left"), light(-1.0, "right")),
+    );
+    let usual = [
+        "render",
+        &scene,
+        "--size",
+        "8x8",
+        "--spp",
+        "2",
+        "--integrator",
+        "direct",
+    ];
+    let layers = ["--layers", "groups", "-o", "a.exr", "-o", "a.gonio"];
+    let said = place.good(&[&usual[..], &layers].concat());
+    let words = "128 shares of sound samples were negative or not finite";
+    assert!(said.err.contains(words), "{said:?}");
+    let info = place.json(&["info", "a.exr", "--json"]);
+    assert_eq!(info["gonio.rejectedInLayers"], "128");
+    assert_eq!(info["gonio.rejectedSamples"], "0");
+    assert_eq!(
+        place.json(&["info", "a.gonio", "--json"])["rejectedInLayers"],
+        128
+    );
+    assert!(
+        place
+            .good(&["merge", "a.gonio", "-o", "b.exr"])
+            .err
+            .contains(words)
+    );
+    // Nothing to tell of where light isn't told apart.
+    let said = place.good(&[&usual[..], &["-o", "c.exr"]].concat());
+    assert!(!said.err.contains("shares"), "{said:?}");
+}
+
 /// Where the scene isn't at hand, faulty samples still have the name of their material.
 #[test]
 fn faulty_samples_have_names_after_merging() {

@@ -1,6 +1,7 @@
 //! glTF materials as [`Material`]s of the model `gltf`.
 
 use super::accessor::Arrays;
+use super::group::light_group;
 use super::image::Images;
 use crate::material::{AlphaMode, Channels, NormalMap, Opacity, TextureInput};
 use crate::texture::{Filter, Texture, Transfer, UvTransform, Wrap};
@@ -80,6 +81,10 @@ impl Materials<'_> {
             self.reflecting(source, name, &place, vertex_colours)?
         };
         material.double_sided = source.double_sided;
+        if material.emission.is_lit() {
+            let warn = &mut |w| self.warn(w);
+            material.emission.group = light_group(&source.extras, &place, warn);
+        }
         let mode = self
             .arrays
             .checked(&source.alpha_mode, &place, "alphaMode")?;

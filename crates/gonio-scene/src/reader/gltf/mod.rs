@@ -6,6 +6,7 @@
 mod accessor;
 mod container;
 mod extension;
+mod group;
 mod image;
 mod layers;
 mod material;

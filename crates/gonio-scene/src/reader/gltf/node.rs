@@ -1,6 +1,7 @@
 //! The node hierarchy: meshes placed in the world, cameras and lights.
 
 use super::Reader;
+use super::group::light_group;
 use crate::SceneError;
 use crate::camera::{Camera, Projection};
 use crate::light::{Light, SpotCone};
@@ -81,7 +82,9 @@ impl Reader<'_, '_> {
         place: &str,
         to_world: &Affine3<f64>,
     ) -> Result<(), SceneError> {
+        let group = light_group(&node.extras, place, &mut |w| self.builder.warn(w));
         if let Some(mesh) = node.mesh {
+            let first = self.builder.instance_count();
             let parts = self.mesh(mesh.value())?;
             for instance in self.instances(node, place)? {
                 let placed = instance.then(to_world);
@@ -103,6 +106,9 @@ impl Reader<'_, '_> {
                     self.builder.instance(shape, placed.to_f32(), material);
                 }
             }
+            if let Some(group) = &group {
+                self.builder.group_from(first, group.as_str());
+            }
         }
         if self.placement.object_only {
             return Ok(());
@@ -115,7 +121,7 @@ impl Reader<'_, '_> {
             .as_ref()
             .and_then(|e| e.khr_lights_punctual.as_ref());
         if let Some(light) = light {
-            self.light(light.light.value(), place, to_world)?;
+            self.light(light.light.value(), place, to_world, group)?;
         }
         Ok(())
     }
@@ -248,6 +254,7 @@ impl Reader<'_, '_> {
         index: usize,
         place: &str,
         to_world: &Affine3<f64>,
+        group: Option<String>,
     ) -> Result<(), SceneError> {
         let path = self.arrays.path;
         let place = format!("{place}, light {index}");
@@ -279,7 +286,7 @@ impl Reader<'_, '_> {
             ));
         }
         let direction = direction.to_f32();
-        self.builder.light(match kind {
+        let made = match kind {
             LightType::Point => Light::Point {
                 position,
                 intensity: colour,
@@ -310,7 +317,12 @@ impl Reader<'_, '_> {
                     cone,
                 }
             }
-        });
+        };
+        let own = || light_group(&light.extras, &place, &mut |w| self.builder.warn(w));
+        match group.or_else(own) {
+            Some(group) => self.builder.light_in(made, group),
+            None => self.builder.light(made),
+        }
         self.builder.warn(
             "KHR_lights_punctual gives photometric values (cd, lx): their numbers are kept, so that 1 cd renders as 1 W sr⁻¹ \
              and 1 lx as 1 W m⁻²",

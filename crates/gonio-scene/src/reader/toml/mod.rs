@@ -37,6 +37,7 @@
 //! kind = "point"                   # point, directional, spot
 //! position = [2, 3, 1]
 //! intensity = [40, 38, 35]         # W/sr
+//! group = "key"                    # told apart in layers; shapes, materials that shine and the environment have it, too
 //! ```
 
 mod light;

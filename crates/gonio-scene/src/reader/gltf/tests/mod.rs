@@ -164,19 +164,21 @@ fn materials_lights_and_cameras_are_mapped() {
     let folder = Folder::new();
     let full = document(|d| {
         d["materials"][0] = json!({
-            "name": "glow", "doubleSided": true, "alphaMode": "MASK", "alphaCutoff": 0.25,
+            "name": "glow", "extras": {"light_group": "lamps"}, "doubleSided": true, "alphaMode": "MASK", "alphaCutoff": 0.25,
             "emissiveFactor": [1, 0.5, 0], "pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.4, 0.6, 0.5], "roughnessFactor": 0.3, "metallicFactor": 0},
             "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8}, "KHR_materials_ior": {"ior": 1.33}, "KHR_materials_odd": {}}
         });
         d["extensionsUsed"] = json!(["KHR_materials_odd", "KHR_lights_punctual", "EXT_odd"]);
         d["extensions"] = json!({"KHR_lights_punctual": {"lights": [
-            {"type": "point", "intensity": 3, "color": [1, 0, 0]}, {"type": "directional", "intensity": 2},
+            {"type": "point", "intensity": 3, "color": [1, 0, 0], "extras": {"light_group": "key"}},
+            {"type": "directional", "intensity": 2, "extras": {"light_group": "key"}},
             {"type": "spot", "spot": {"outerConeAngle": 0.5}}
         ]}});
         d["nodes"] = json!([
             {"mesh": 0, "children": [1, 2, 3, 4, 5]},
             {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [0, 7, 0]},
-            {"extensions": {"KHR_lights_punctual": {"light": 1}}}, {"extensions": {"KHR_lights_punctual": {"light": 2}}},
+            {"extensions": {"KHR_lights_punctual": {"light": 1}}, "extras": {"light_group": "sun", "other": [1]}},
+            {"extensions": {"KHR_lights_punctual": {"light": 2}}, "extras": {"light_group": 3}},
             {"camera": 0, "translation": [0, 0, 5], "scale": [2, 2, 2]}, {"camera": 1, "name": "flat"}
         ]);
         d["cameras"] = json!([
@@ -200,6 +202,14 @@ fn materials_lights_and_cameras_are_mapped() {
         matches!(lights[1], Light::Directional { direction, irradiance } if direction.z == -1.0 && *irradiance == [2.0; 3])
     );
     assert!(matches!(lights[2], Light::Spot { .. }));
+    // Groups by the node, else by the light or the material; what can be no name is told.
+    let groups = &scene.lights.groups();
+    let of: Vec<&str> = (0..4)
+        .map_while(|light| Some(groups[scene.lights.group(light)? as usize].as_str()))
+        .collect();
+    assert_eq!(of, ["key", "sun", "default", "lamps"]);
+    let says = |w: &&String| w.contains("node 3: the extra property light_group is 3");
+    assert_eq!(scene.warnings.iter().filter(says).count(), 1);
     assert!(matches!(
         lights[3],
         Light::Area {
