@@ -12,8 +12,9 @@ use std::path::{Path, PathBuf};
     gonio render room.toml --layers groups -o room.exr\n  \
     gonio relight room.exr --light key=2.0 --light sky=0.5,0.6,1.0 -o evening.exr -o evening.png\n  \
     gonio relight room.exr --light key=0 -o without-key.png\n\n\
-    The picture is the sum of its groups' layers, each times its factor: no ray is followed. An EXR can be mixed again; the variance, direct and\n\
-    indirect light of a mixture aren't known, and their layers are left out.")]
+    The picture is the sum of its groups' layers, each times its factor: no ray is followed. An EXR\n\
+    can be mixed again. The variance, the direct and the indirect light of a mixture are not known:\n\
+    their layers are left out.")]
 pub(super) struct Arguments {
     /// An EXR with a layer for each group of lights: 'gonio render --layers groups'
     file: PathBuf,

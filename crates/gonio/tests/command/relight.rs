@@ -2,6 +2,7 @@
 
 use crate::support::{Place, Said};
 use gonio::image::{Image, Layers};
+use gonio::verify::statistics::{Moments, welch_t_test};
 
 /// A room with three groups of lights, `key` times a factor, and all of it times another.
 fn room(key: f32, all: f32) -> String {
@@ -134,6 +135,35 @@ fn one_light_is_brighter_as_in_a_rendering() {
     let found = distance(&picture("relit.exr"), &picture("b.exr"));
     assert!(found <= ROUNDING, "{found}");
     assert!(distance(&picture("a.exr"), &picture("b.exr")) > 0.1);
+}
+
+/// Paths choose among lights by power, so a brighter light is sampled more often: the mixture and the rendering have the same expectation,
+/// by eight means of pictures of either, each with random numbers of its own.
+#[test]
+fn one_light_is_brighter_as_in_a_rendering_by_paths() {
+    let room = Room(Place::new());
+    let (mut relit, mut dimmer, mut rendered) = (Moments::new(), Moments::new(), Moments::new());
+    let mean = |name: &str| {
+        let image = room.layers(name).rgb("").unwrap();
+        let sum: f64 = image.pixels.iter().map(|p| f64::from(p[0])).sum();
+        sum / image.pixels.len() as f64
+    };
+    for seed in 0..8 {
+        let (one, other) = (seed.to_string(), (seed + 100).to_string());
+        room.shoot("a", &self::room(1.0, 1.0), &["--seed", &one]);
+        room.relight(&["key=3"], "relit.exr");
+        relit.push(mean("relit.exr"));
+        room.relight(&["key=2.5"], "dimmer.exr");
+        dimmer.push(mean("dimmer.exr"));
+        room.shoot("b", &self::room(3.0, 1.0), &["--seed", &other]);
+        rendered.push(mean("b.exr"));
+    }
+    let p_value = |a: &Moments, b: &Moments| welch_t_test(a, b).p_value;
+    let found = p_value(&relit, &rendered);
+    assert!(found > 1e-6, "{found}");
+    // The control: a light that is not quite as bright.
+    let found = p_value(&dimmer, &rendered);
+    assert!(found < 1e-6, "{found}");
 }
 
 /// Groups are mixed again and again, what isn't known is left out, and the file says what was done.
