@@ -15,7 +15,7 @@ const ROWS: usize = 4;
 /// The mean radiance under the kernel around each axis: quadrature over all texels of a panorama, as they are interpolated, finer than
 /// the lobe. For pictures that are no panoramas the finest cells of the tree are the points.
 ///
-/// Rounding: about 1e-6. Quadrature: about 1e-5 ([`Points::of_reference`]).
+/// Rounding: about 1e-6. Quadrature: about 1e-5.
 pub fn reference(
     environment: &Environment,
     tree: &LightTree,

@@ -15,6 +15,7 @@ pub(crate) use row::{FilmRow, Place};
 
 use crate::RenderError;
 use gonio_image::Image;
+use rayon::prelude::*;
 use triple::{Nearest, Triple};
 
 /// Samples that were not finite or negative, kept out of the image.
@@ -194,8 +195,13 @@ impl Film {
     /// amount that falls with the number of samples before the first test.
     pub fn noise(&self) -> f64 {
         let sum = |v: [f64; 3]| v[0] + v[1] + v[2];
-        let mean =
-            self.pixels.iter().map(|p| sum(p.mean())).sum::<f64>() / self.pixels.len() as f64;
+        // Of each pixel the mean and its variance.
+        let pixels: Vec<[f64; 2]> = self
+            .pixels
+            .par_iter()
+            .map(|p| [sum(p.mean()), sum(p.variance_of_mean())])
+            .collect();
+        let mean = pixels.iter().map(|[mean, _]| mean).sum::<f64>() / pixels.len() as f64;
         if mean == 0.0 {
             return if self.samples_per_pixel() < 2 {
                 f64::INFINITY
@@ -203,10 +209,9 @@ impl Film {
                 0.0
             };
         }
-        let mut errors: Vec<f64> = self
-            .pixels
+        let mut errors: Vec<f64> = pixels
             .iter()
-            .map(|p| sum(p.variance_of_mean()).sqrt() / (sum(p.mean()) + 0.01 * mean))
+            .map(|[own, variance]| variance.sqrt() / (own + 0.01 * mean))
             .collect();
         let k = (errors.len() - 1) * 95 / 100;
         *errors.select_nth_unstable_by(k, f64::total_cmp).1

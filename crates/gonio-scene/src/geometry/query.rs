@@ -64,11 +64,10 @@ impl Geometry {
     /// Both queries, for any kernel.
     #[inline(always)]
     pub(super) fn search<K: Kernel, const ANY: bool>(&self, kernel: K, ray: &Ray) -> Nearest {
-        let nearest = Nearest::none(ray.t_max);
+        let mut nearest = Nearest::none(ray.t_max);
         if !ray.is_valid() {
             return nearest;
         }
-        let mut nearest = nearest;
         let boxes = BoxRay::new(ray.origin, ray.direction, &self.bounds);
         let mut visitor = Instances::<K, ANY> {
             kernel,
