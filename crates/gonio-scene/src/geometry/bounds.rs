@@ -47,6 +47,20 @@ impl Aabb {
         }
     }
 
+    /// The largest distance along an axis from a point to a corner.
+    #[inline(always)]
+    pub(crate) fn reach(&self, from: Vec3<f32>) -> f32 {
+        let (low, high, o) = (self.min.to_array(), self.max.to_array(), from.to_array());
+        let mut reach = 0.0f32;
+        for axis in 0..3 {
+            let r = (low[axis] - o[axis])
+                .abs()
+                .max((high[axis] - o[axis]).abs());
+            reach = reach.max(r);
+        }
+        reach
+    }
+
     /// The smallest box around both.
     pub fn union(&self, o: &Self) -> Self {
         Self {

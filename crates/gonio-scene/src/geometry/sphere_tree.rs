@@ -97,16 +97,8 @@ pub(crate) struct SphereRay {
 impl SphereRay {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray, bounds: &Aabb) -> Self {
-        let (o, d) = (ray.origin.to_array(), ray.direction);
-        let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
-        let (mut reach, mut size) = (0.0f32, 0.0f32);
-        for axis in 0..3 {
-            let r = (low[axis] - o[axis])
-                .abs()
-                .max((high[axis] - o[axis]).abs());
-            reach = reach.max(r);
-            size = size.max(o[axis].abs());
-        }
+        let (o, d) = (ray.origin, ray.direction);
+        let (reach, size) = (bounds.reach(o), o.x.abs().max(o.y.abs()).max(o.z.abs()));
         let square = d.dot(d);
         let inverse = if (1e-30..1e30).contains(&square) {
             1.0 / square
@@ -114,7 +106,7 @@ impl SphereRay {
             f32::NAN
         };
         Self {
-            origin: o,
+            origin: o.to_array(),
             direction: d.to_array(),
             inverse,
             step: Real::sqrt(inverse),

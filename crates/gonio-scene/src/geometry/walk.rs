@@ -29,15 +29,7 @@ impl BoxRay {
     #[inline(always)]
     pub(crate) fn new(origin: Vec3<f32>, direction: Vec3<f32>, bounds: &Aabb) -> Self {
         let (o, d) = (origin.to_array(), direction.to_array());
-        let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
-        let mut reach = 0.0f32;
-        for axis in 0..3 {
-            let r = (low[axis] - o[axis])
-                .abs()
-                .max((high[axis] - o[axis]).abs());
-            reach = reach.max(r);
-        }
-        let reach_pad = reach * (1.0 / (1 << 20) as f32);
+        let reach_pad = bounds.reach(origin) * (1.0 / (1 << 20) as f32);
         let mut ray = Self {
             inverse: [0.0; 3],
             near: [0.0; 3],
@@ -82,7 +74,7 @@ fn announce<K: Kernel, V: Visitor>(kernel: K, tree: &WideTree, visitor: &V, chil
 }
 
 /// A walk that can be left after any step.
-pub(crate) struct Walk {
+struct Walk {
     stack: Stack,
     current: u32,
 }

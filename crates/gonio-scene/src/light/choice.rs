@@ -280,20 +280,30 @@ pub(super) fn power(light: &Light, geometry: &Geometry) -> f64 {
     let radius = f64::from(geometry.bounds().radius()).max(1e-6);
     let cross_section = PI * radius * radius;
     match light {
-        Light::Point { intensity, .. } => 4.0 * PI * luminance(*intensity),
+        Light::Directional { irradiance, .. } => cross_section * luminance(*irradiance),
+        Light::Environment(e) => cross_section * spherical_integral(e),
+        _ => flux(light, geometry).map_or(0.0, |(rgb, factor)| factor * luminance(rgb)),
+    }
+}
+
+/// What a light emits, and the factor that makes radiant flux of it \[W]: the intensity and 4π for a point light, or the solid angle of a
+/// spot light's cone; the radiance and π A for each side of an area light. Nothing for a light that is infinitely far away.
+pub(super) fn flux(light: &Light, geometry: &Geometry) -> Option<([f32; 3], f64)> {
+    match light {
+        Light::Point { intensity, .. } => Some((*intensity, 4.0 * PI)),
         Light::Spot {
             intensity, cone, ..
-        } => cone.solid_angle() * luminance(*intensity),
-        Light::Directional { irradiance, .. } => cross_section * luminance(*irradiance),
+        } => Some((*intensity, cone.solid_angle())),
         Light::Area {
             instance,
             radiance,
             two_sided,
         } => {
             let sides = if *two_sided { 2.0 } else { 1.0 };
-            sides * PI * f64::from(geometry.area(*instance)) * luminance(*radiance)
+            let area = f64::from(geometry.area(*instance));
+            Some((*radiance, sides * PI * area))
         }
-        Light::Environment(e) => cross_section * spherical_integral(e),
+        Light::Directional { .. } | Light::Environment(_) => None,
     }
 }
 

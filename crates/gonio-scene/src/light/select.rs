@@ -1,6 +1,6 @@
 //! [`Lights`], all lights of a scene, and the choice among them.
 
-use super::choice::Choice;
+use super::choice::{Choice, flux};
 use super::emitter::Emitter;
 use super::group::{Grouped, LightGroups};
 use super::punctual::illuminate;
@@ -8,7 +8,6 @@ use super::{Light, LightSample, LightTarget, Receiver, WHOLE};
 use crate::{Geometry, Material, SurfacePoint};
 use gonio_env::{Environment, Guide};
 use gonio_num::Vec3;
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// All lights of a scene.
@@ -208,25 +207,8 @@ impl Lights {
     /// The radiant flux \[W] that a light emits, in each channel: 4π I of a point light, ∫ I dω of a spot light's cone, π A L of
     /// each side of an area light. Nothing for a light that is infinitely far away, or that does not exist.
     pub fn power(&self, light: u32) -> Option<[f64; 3]> {
-        let times = |rgb: &[f32; 3], factor: f64| Some(rgb.map(|c| factor * f64::from(c)));
-        match self.lights.get(light as usize)? {
-            Light::Point { intensity, .. } => times(intensity, 4.0 * PI),
-            Light::Spot {
-                intensity, cone, ..
-            } => times(intensity, cone.solid_angle()),
-            Light::Area {
-                instance,
-                radiance,
-                two_sided,
-            } => {
-                let sides = if *two_sided { 2.0 } else { 1.0 };
-                times(
-                    radiance,
-                    sides * PI * f64::from(self.geometry.area(*instance)),
-                )
-            }
-            Light::Directional { .. } | Light::Environment(_) => None,
-        }
+        let (rgb, factor) = flux(self.lights.get(light as usize)?, &self.geometry)?;
+        Some(rgb.map(|c| factor * f64::from(c)))
     }
 
     /// The density \[sr⁻¹] with which [`Lights::sample`] at `from` chooses the direction `wi` by way of the environment.
