@@ -3,7 +3,7 @@
  * of the same (`link.ts`).
  */
 import { computed, signal } from "@preact/signals";
-import type { Angles, Complaint, Description } from "./engine/protocol";
+import type { Angles, Complaint, Description, Factors } from "./engine/protocol";
 
 /** A function that is shown. */
 export interface Shown {
@@ -23,7 +23,6 @@ export interface Shown {
 export type Scale = "linear" | "cube-root" | "log";
 export type Channel = "luminance" | "red" | "green" | "blue" | "rgb";
 export type ToneMap = "pbr-neutral" | "srgb" | "aces";
-export type Part = "all" | "no-brdf" | "no-cosine" | "no-light";
 
 export const functions = signal<Shown[]>([]);
 /** The one whose parameters are edited, by id. */
@@ -46,9 +45,10 @@ export const phiD = signal(90);
 /** Of the rendered picture. */
 export const object = signal<"ball" | "preview">("preview");
 /** `point`, or a panorama as the engine names it. */
-export const light = signal("files/dawn.hdr");
+export const light = signal("files/sunset.hdr");
 export const turn = signal(0);
-export const part = signal<Part>("all");
+/** The reflection equation's factors that take part in the ball and the picture. */
+export const factors = signal<Factors>({ light: true, brdf: true, cosine: true });
 /** Two ids whose difference is shown (second − first), or null. */
 export const difference = signal<[number, number] | null>(null);
 

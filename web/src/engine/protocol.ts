@@ -72,12 +72,21 @@ export interface Description {
 
 /** The value for one pair of directions, in double precision: what `gonio brdf eval --json` prints, under the same keys. */
 export interface Value {
-  f: [number, number, number];
-  f_cos: [number, number, number];
-  pdf: number;
+  f_per_sr: [number, number, number];
+  f_cos_per_sr: [number, number, number];
+  pdf_per_sr: number;
+}
+
+/** Which factors of the reflection equation Lr = ∫ L f cosθ dω take part. */
+export interface Factors {
+  light: boolean;
+  brdf: boolean;
+  cosine: boolean;
 }
 
 export interface Requests {
+  /** After a file of the engine's folder was replaced: what was read from files is read anew. */
+  forget: { request: Record<string, never>; answer: Record<string, never> };
   catalogue: { request: Record<string, never>; answer: Catalogue };
   /** What a description means; the first thing to ask of any text or file. */
   describe: { request: { function: string }; answer: Description };
@@ -85,37 +94,53 @@ export interface Requests {
   set: { request: { function: string; values: Record<string, string | null> }; answer: Description };
   evaluate: { request: { function: string; wi: Angles; wo: Angles }; answer: Value };
   /**
-   * The lobe: f for `wi` over outgoing directions. Arrays: `directions` (3 a vertex), `values` (3 a vertex), `triangles` (3 vertices each,
-   * as numbers). Vertices are denser around the peaks. With `below` also the lower hemisphere of what transmits.
-   * `spikes` (7 each): direction, weight (3), probability of what goes into single directions (mirrors, glass).
+   * The lobe: f for `wi` over outgoing directions, as a surface that is finer where it bends when drawn on `scale`. Arrays: `directions`
+   * (3 a vertex), `values` (3 a vertex), `triangles` (3 vertices each), `spikes` (6 each: direction, share of the light that leaves in
+   * this one direction, as of mirrors and glass).
    */
-  lobe: { request: { function: string; wi: Angles; rings: number; cosine: boolean }; answer: { peak: number; largest: number; finite: boolean } };
-  /**
-   * f in the plane of incidence. Arrays: `angles` (−90…90, positive on the side away from the light, where a mirror reflects; −180…180 of what transmits),
-   * `values` (3 each). Steps are finer around peaks.
-   */
-  curve: { request: { function: string; wi: Angles; cosine: boolean }; answer: { largest: number } };
-  /** f over θd (down, 0…90°) and θh (right, linear in √θh as for MERL's pictures), `size`² pixels. Array: `values` (3 each). */
-  slice: { request: { function: string; phi_d: number; size: number }; answer: { largest: number } };
-  /** Directional albedo at angles 0…89.5°. Arrays: `angles`, `reflected` (3 each), `total` (3 each; with what passes through). */
-  albedo: { request: { function: string; phi: number; steps: number }; answer: { error: number } };
-  /**
-   * A ball under one distant light of radiance-free unit irradiance, seen along −z from afar; y up. Array: `values` (3 a pixel, NaN outside
-   * the ball). `part`: the whole of the reflection equation, or one factor of it.
-   */
-  ball: {
-    request: { function: string; light: Angles; size: number; part: "all" | "brdf" | "cosine" | "light" };
-    answer: { largest: number };
+  lobe: {
+    request: { function: string; wi: Angles; scale: "linear" | "cube-root" | "log"; cosine: boolean };
+    answer: { largest: [number, number, number] };
   };
   /**
-   * A part of a picture by the renderer: samples `first`…`first + count` of every pixel, which add up over workers and calls.
-   * Array: `sums` (3 a pixel: sums of `count` samples). `part`: which factors of the reflection equation take part.
+   * f in the plane of incidence. Arrays: `angles` (−90…90, positive on the side away from the light, where a mirror reflects; −180…180 of
+   * what transmits), `values` (3 each), `spikes` (4 each: angle, share). Steps are finer where it bends.
+   */
+  curve: { request: { function: string; wi: Angles; cosine: boolean }; answer: { largest: [number, number, number] } };
+  /**
+   * f over outgoing directions seen from above, `size`² pixels: azimuthal equidistant (radius ∝ θr, 90° at the rim), φ = 0 right, φ = 90° up, rows from
+   * the top, pixel centres at (i + 0.5) / size. Array: `values` (3 a pixel, NaN outside of the disc).
+   */
+  hemisphere: { request: { function: string; wi: Angles; size: number; cosine: boolean }; answer: { largest: [number, number, number] } };
+  /**
+   * The command's slice: f over θd (row 0 is 90°, the last one 0) and θh (0…90° from left to right), both even steps of half a degree, nodes and
+   * not centres: node 0 is 0°, the last one 89.9°. Array: `values` (3 each; NaN where a direction is below the horizon).
+   */
+  slice: { request: { function: string; phi_d: number }; answer: { side: number; largest: [number, number, number] } };
+  /**
+   * Directional albedo at the given angles (0…89.5°) and azimuth. Arrays: `reflected` (3 each), `total` (3 each; with what passes
+   * through). Ask for a few angles at a time: each may take tens of milliseconds.
+   */
+  albedo: { request: { function: string; thetas: number[]; phi: number }; answer: { error: number } };
+  /**
+   * A ball under one distant light, seen along −z from afar; y up; `light` is from the direction of the viewer (θ) and from +x (right) towards
+   * +y (up) (φ). The light's irradiance is π: a white diffuse surface that faces it appears as 1. Array: `values` (3 a pixel, rows from the top, NaN outside the ball). Factors of
+   * the reflection equation that are switched off are 1.
+   */
+  ball: {
+    request: { function: string; light: Angles; size: number; factors: Factors };
+    answer: { largest: [number, number, number] };
+  };
+  /**
+   * A part of a picture by the renderer: samples `first`…`first + count` of every pixel, which add up over workers and calls to the picture
+   * that the command renders. Array: `sums` (3 a pixel: sums of `count` samples). Factors that are off: the light is uniform, of radiance 1; the
+   * reflection function is 1/π; the cosine is 1. With a factor off only one reflection is followed.
    */
   render: {
     request: {
       function: string;
       object: "ball" | "preview";
-      /** A panorama: a file of the engine's folder, or `sky:SUN_ELEVATION`, or `uniform:RADIANCE`; or `point` with `direction`. */
+      /** `files/NAME`, `sky:elevation=30`, `uniform:1`, as the command's --env; or `point`, from `direction` as for `ball`, but relative to the camera. */
       light: string;
       direction: Angles;
       /** Turned about the vertical axis, degrees. */
@@ -125,12 +150,12 @@ export interface Requests {
       first: number;
       count: number;
       bounces: number;
-      part: "all" | "no-brdf" | "no-cosine" | "no-light";
+      factors: Factors;
     };
     answer: { samples: number; rejected: number };
   };
   /** A panorama for show: array `values` (3 a pixel), rows from the zenith down. */
-  panorama: { request: { light: string; width: number; height: number }; answer: { largest: number } };
+  panorama: { request: { light: string; width: number; height: number }; answer: { largest: [number, number, number] } };
   /** The laboratory's verdicts: what `gonio brdf check --json` prints for one function. */
   check: { request: { function: string; effort: "quick" | "standard" }; answer: Report };
   /** Shader code. */
@@ -156,28 +181,36 @@ export interface Requests {
 
 export type Operation = keyof Requests;
 
-export interface Witness {
-  wi: Angles0 | null;
-  wo: Angles0 | null;
-  values: { name: string; value: number }[];
-}
-interface Angles0 {
+export interface WitnessDirection {
+  xyz: [number, number, number];
   theta_deg: number;
   phi_deg: number;
 }
 
+export interface Witness {
+  wi: WitnessDirection | null;
+  wo: WitnessDirection;
+  u: [number, number, number] | null;
+  values: { name: string; value: number | null }[];
+}
+
 export interface Verdict {
   property: string;
-  outcome: "pass" | "fail" | "declared" | "not_applicable";
+  outcome: "pass" | "fail" | "allowed" | "declared" | "information" | "not_applicable";
+  /** The worst violation or the quantity looked at; `detail` says which. */
   figure: number | null;
   bound: number | null;
-  evaluations: number;
-  note?: string | null;
+  p_value: number | null;
   witness: Witness | null;
+  samples: number;
+  false_positive_rate: number;
+  detail: string;
+  note: string | null;
   [key: string]: unknown;
 }
 
 export interface Report {
+  passed: boolean;
   subject: string;
   effort: string;
   seed_name: string;
