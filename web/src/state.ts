@@ -24,6 +24,8 @@ export type Scale = "linear" | "cube-root" | "log";
 export type Channel = "luminance" | "red" | "green" | "blue" | "rgb";
 export type ToneMap = "pbr-neutral" | "srgb" | "aces";
 
+export type ViewName = "lobe" | "polar" | "cartesian" | "slice" | "albedo" | "ball" | "preview" | "difference";
+
 export const functions = signal<Shown[]>([]);
 /** The one whose parameters are edited, by id. */
 export const selected = signal<number>(0);
@@ -51,6 +53,9 @@ export const turn = signal(0);
 export const factors = signal<Factors>({ light: true, brdf: true, cosine: true });
 /** Two ids whose difference is shown (second − first), or null. */
 export const difference = signal<[number, number] | null>(null);
+
+/** The view that is shown large, over the others. */
+export const large = signal<ViewName | null>(null);
 
 export const visible = computed(() => functions.value.filter((f) => f.visible && f.description !== null));
 export const current = computed(() => functions.value.find((f) => f.id === selected.value) ?? null);

@@ -1,0 +1,5 @@
+import type { JSX } from "preact";
+
+export function Cartesian(): JSX.Element {
+  return <h2>f against the angle</h2>;
+}
