@@ -4,6 +4,7 @@ import { large, type ViewName } from "./state";
 import { Albedo } from "./views/albedo";
 import { Ball } from "./views/ball";
 import { Cartesian } from "./views/cartesian";
+import { Controls } from "./views/controls";
 import { Difference } from "./views/difference";
 import { Lobe } from "./views/lobe";
 import { Polar } from "./views/polar";
@@ -29,6 +30,9 @@ export function App(): JSX.Element {
         <h1>Gonio explorer</h1>
       </header>
       <aside class="panel" aria-label="Functions" />
+      <div class="toolbar">
+        <Controls />
+      </div>
       <main class="views" data-large={large.value}>
         {VIEWS.map(({ view, name, Component }) => (
           <section key={view} class="slot" data-view={view} data-state={large.value === view ? "large" : large.value === null ? "tile" : "behind"} aria-label={name}>

@@ -1,17 +1,24 @@
 /** What can be done to the list of functions; every change of a description goes through the library. */
 import { engine, EngineError } from "./engine/client";
-import type { Complaint, Description } from "./engine/protocol";
-import { functions, selected, type Shown } from "./state";
+import type { Complaint, Description, Reply } from "./engine/protocol";
+import { difference, functions, selected, type Shown } from "./state";
 
+/** As many as the palette has colours, and as the command plots together. */
 export const MOST = 8;
 
 let nextId = 1;
+/** Parameters that were asked for and not yet answered, by function: a newer request holds the older ones' changes too. */
+const pending = new Map<number, Record<string, string | null>>();
+
+export function find(id: number): Shown | undefined {
+  return functions.value.find((f) => f.id === id);
+}
 
 function update(id: number, change: Partial<Shown>): void {
   functions.value = functions.value.map((f) => (f.id === id ? { ...f, ...change } : f));
 }
 
-function complaint(error: unknown): Complaint {
+export function complaintOf(error: unknown): Complaint {
   return error instanceof EngineError ? error.complaint : { message: String(error), help: null, place: null };
 }
 
@@ -26,41 +33,70 @@ export function add(text: string, shown: { colour?: number; visible?: boolean } 
   if (functions.value.length >= MOST) return null;
   const id = nextId++;
   const colour = shown.colour ?? freeColour();
-  functions.value = [...functions.value, { id, text, description: null, complaint: null, colour, visible: shown.visible ?? true }];
+  functions.value = [...functions.value, { id, text, description: null, complaint: null, colour, visible: shown.visible ?? true, revision: 0 }];
   selected.value = id;
   void setText(id, text);
   return id;
 }
 
-async function settle(id: number, asked: ReturnType<typeof engine.ask<"describe" | "set">>): Promise<void> {
+async function settle(id: number, asked: Promise<Reply<"describe"> | Reply<"set"> | null>): Promise<boolean> {
   try {
     const reply = await asked;
-    if (reply === null) return;
-    const description = reply.answer as Description;
+    if (reply === null) return false;
+    const description: Description = reply.answer;
     update(id, { text: description.text, description, complaint: null });
+    return true;
   } catch (error) {
-    update(id, { complaint: complaint(error) });
+    update(id, { complaint: complaintOf(error) });
+    return false;
   }
 }
 
 /** Describes the function by this text; if the library can't, the complaint is shown and the views keep what they have. */
-export function setText(id: number, text: string): Promise<void> {
+export function setText(id: number, text: string): Promise<boolean> {
+  pending.delete(id);
   return settle(id, engine.ask("describe", { function: text }, { pool: "fast", key: `function:${id}` }));
 }
 
 /** Sets parameters, or takes them away (null). */
-export function setValues(id: number, values: Record<string, string | null>): Promise<void> {
-  const shown = functions.value.find((f) => f.id === id);
-  if (shown === undefined) return Promise.resolve();
-  return settle(id, engine.ask("set", { function: shown.text, values }, { pool: "fast", key: `set:${id}:${Object.keys(values).join()}` }));
+export async function setValues(id: number, values: Record<string, string | null>): Promise<boolean> {
+  const shown = find(id);
+  if (shown === undefined) return false;
+  const all = { ...pending.get(id), ...values };
+  pending.set(id, all);
+  const done = await settle(id, engine.ask("set", { function: shown.text, values: all }, { pool: "fast", key: `function:${id}` }));
+  if (pending.get(id) === all) pending.delete(id);
+  return done;
+}
+
+/** After a file was replaced: describes what rests on it anew. */
+export async function refresh(file: string): Promise<void> {
+  const path = `files/${file}`;
+  for (const shown of functions.value) {
+    if (!shown.text.includes(path)) continue;
+    update(shown.id, { revision: shown.revision + 1 });
+    await setText(shown.id, shown.text);
+  }
+}
+
+export function duplicate(id: number): void {
+  const shown = find(id);
+  if (shown !== undefined) add(shown.text);
 }
 
 export function remove(id: number): void {
   const at = functions.value.findIndex((f) => f.id === id);
+  if (difference.value?.includes(id)) difference.value = null;
+  engine.drop("fast", `function:${id}`);
   functions.value = functions.value.filter((f) => f.id !== id);
   if (selected.value === id) selected.value = (functions.value[at] ?? functions.value[at - 1])?.id ?? 0;
 }
 
-export function toggle(id: number): void {
-  functions.value = functions.value.map((f) => (f.id === id ? { ...f, visible: !f.visible } : f));
+export function setVisible(id: number, visible: boolean): void {
+  update(id, { visible });
+}
+
+/** Takes the complaint away; what the views show was never lost. */
+export function dismiss(id: number): void {
+  update(id, { complaint: null });
 }

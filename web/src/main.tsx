@@ -3,8 +3,12 @@ import "./look/fonts.css";
 import "./look/tokens.css";
 import "./look/base.css";
 import "./look/app.css";
+import "./look/panel.css";
+import "./look/dialog.css";
 import { App } from "./app";
-import { start } from "./start";
+import { loadCatalogue } from "./catalogue";
+import { persist } from "./persist";
 
-start();
+void persist();
+void loadCatalogue();
 render(<App />, document.getElementById("app")!);

@@ -18,6 +18,8 @@ export interface Shown {
   /** Index into the palette, which is the same in every view. */
   colour: number;
   visible: boolean;
+  /** Grows when a file behind the description changed (a shader was edited): the same text is another function then. */
+  revision: number;
 }
 
 export type Scale = "linear" | "cube-root" | "log";

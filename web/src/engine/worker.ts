@@ -58,9 +58,13 @@ scope.onmessage = (event) => {
       // A failure is told by the first call.
       instance.catch(() => undefined);
       break;
-    case "file":
+    case "file": {
+      const replaced = files.has(message.name);
       files.set(message.name, new File(message.bytes, { readonly: true }));
+      // The library keeps what it read; calls are answered in order, so the next one sees the new file.
+      if (replaced) void instance?.then((running) => running.call("forget", {})).catch(() => (instance = null));
       break;
+    }
     case "call":
       void call(message);
       break;
