@@ -40,11 +40,12 @@ export function add(text: string, shown: { colour?: number; visible?: boolean } 
 }
 
 async function settle(id: number, asked: Promise<Reply<"describe"> | Reply<"set"> | null>): Promise<boolean> {
+  const changed = performance.now();
   try {
     const reply = await asked;
     if (reply === null) return false;
     const description: Description = reply.answer;
-    update(id, { text: description.text, description, complaint: null });
+    update(id, { text: description.text, description, complaint: null, changed });
     return true;
   } catch (error) {
     update(id, { complaint: complaintOf(error) });

@@ -20,6 +20,8 @@ export interface Shown {
   visible: boolean;
   /** Grows when a file behind the description changed (a shader was edited): the same text is another function then. */
   revision: number;
+  /** When what `text` says was set, on the clock of `performance.now()`: for the measurement of what a slider takes. */
+  changed?: number;
 }
 
 export type Scale = "linear" | "cube-root" | "log";

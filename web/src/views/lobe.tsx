@@ -1,5 +1,285 @@
+/** The lobe in space: f for one direction of incidence, as a surface that is turned by dragging. */
+import { computed, effect, useSignalEffect } from "@preact/signals";
 import type { JSX } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { Angles } from "../engine/protocol";
+import { channelOf } from "../plot/colours";
+import { clamp, nudged, toVector } from "../plot/directions";
+import { csvText, pngOfCanvas } from "../plot/save";
+import { type Axis, axis, degrees, number } from "../plot/scale";
+import { channel, cosine, scale, visible, wi, wo } from "../state";
+import { Complaints, Frame, type Size } from "./frame";
+import { follow, setWi, setWo } from "./handle";
+import { Live, seen } from "./live";
+import type { Colours, LobeScene, Part } from "./lobe-scene";
+import { complaintsOf } from "./reading";
+import { colour, theme } from "./theme";
+import { drawn } from "./timings";
+
+const lobes = new Live("lobe", "fast", () =>
+  seen.lobe.value
+    ? visible.value.map((f) => ({
+        key: String(f.id),
+        shown: f,
+        request: { function: f.text, wi: wi.value, scale: scale.value, cosine: cosine.value },
+      }))
+    : null,
+);
+
+/** The axis of the radius: logarithmic ones begin where nearly all of the values are above. */
+const radial = computed<Axis>(() => {
+  let most = 0;
+  const positive: number[] = [];
+  for (const { arrays } of lobes.answers.value.values()) {
+    const values = arrays["values"]!;
+    for (let k = 0; k + 2 < values.length; k += 3) {
+      const value = channelOf(channel.value, values, k);
+      if (!(value > 0) || value === Infinity) continue;
+      most = Math.max(most, value);
+      if (scale.value === "log") positive.push(value);
+    }
+  }
+  positive.sort((a, b) => a - b);
+  return axis(scale.value, positive[Math.floor(0.02 * positive.length)] ?? 0, most);
+});
+
+const colours = (): Colours => ({
+  line: colour("--line"),
+  strong: colour("--line-strong"),
+  ink: colour("--ink"),
+  light: colour("--light"),
+  surface: colour("--surface"),
+});
+
+function table(): string | null {
+  const rows: number[][] = [];
+  visible.value.forEach((f, index) => {
+    const { directions, values } = lobes.answers.value.get(String(f.id))?.arrays ?? {};
+    for (let k = 0; k + 2 < (directions?.length ?? 0); k += 3) rows.push([index + 1, ...directions!.subarray(k, k + 3), ...values!.subarray(k, k + 3)]);
+  });
+  return rows.length > 0 ? csvText(["function", "x", "y", "z", "red", "green", "blue"], rows) : null;
+}
 
 export function Lobe(): JSX.Element {
-  return <h2>Lobe in space</h2>;
+  const scene = useRef<LobeScene | null>(null);
+  return (
+    <Frame
+      view="lobe"
+      title="Lobe"
+      about="f over all directions, for light that comes along the arrow: the distance from the centre is the value. Drag the light; drag elsewhere to turn the view. Lines on the lobe are at the values of the rings."
+      saves={{
+        png: () => {
+          if (scene.current === null) return null;
+          // What was drawn is kept for the screen only: draw, and read in the same task.
+          scene.current.render();
+          return pngOfCanvas(scene.current.canvas);
+        },
+        csv: table,
+      }}
+    >
+      {(size) => <Space size={size} scene={scene} />}
+    </Frame>
+  );
+}
+
+function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null } }): JSX.Element {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const overlay = useRef<HTMLDivElement>(null);
+  const [there, setThere] = useState(false);
+  const [problem, setProblem] = useState<string | null>(null);
+
+  useEffect(() => {
+    let gone = false;
+    const stops: (() => void)[] = [];
+    import("./lobe-scene")
+      .then(({ LobeScene, REACH }) => {
+        if (gone) return;
+        let newest = 0;
+        const made = new LobeScene(canvas.current!, () => {
+          place(made, overlay.current!, REACH);
+          if (newest > 0) drawn("lobe", newest);
+          newest = 0;
+        });
+        scene.current = made;
+        stops.push(
+          effect(() => {
+            theme.value;
+            made.setStage(radial.value, colours());
+          }),
+          effect(() => {
+            theme.value;
+            made.setLight(wi.value, colours());
+          }),
+          effect(() => {
+            theme.value;
+            made.setViewer(wo.value, colours());
+          }),
+          effect(() => {
+            theme.value;
+            const parts = visible.value.flatMap((f): Part[] => {
+              const answer = lobes.answers.value.get(String(f.id));
+              if (answer === undefined) return [];
+              newest = Math.max(newest, answer.since);
+              const { directions, values, triangles, spikes } = answer.arrays;
+              return [{ colour: colour(`--series-${f.colour}`), directions: directions!, values: values!, triangles: triangles!, spikes: spikes ?? new Float32Array() }];
+            });
+            made.setLobes(parts, radial.value, channel.value);
+          }),
+        );
+        setThere(true);
+      })
+      .catch((error: unknown) => setProblem(`The lobe can't be drawn: ${error instanceof Error ? error.message : String(error)}. It needs WebGL 2; the other views don't.`));
+    return () => {
+      gone = true;
+      for (const stop of stops) stop();
+      scene.current?.dispose();
+      scene.current = null;
+    };
+  }, []);
+
+  useEffect(() => scene.current?.resize(size.width, size.height), [there, size.width, size.height]);
+
+  return (
+    <>
+      <canvas ref={canvas} class="lobe-canvas" />
+      <div ref={overlay} class="lobe-overlay" tabIndex={0} role="group" aria-label="Lobe in space: arrow keys turn it, plus and minus scale it" onKeyDown={(e) => turnByKey(e, scene.current)} onPointerDown={(e) => turnByPointer(e, scene.current)} onWheel={(e) => zoomByWheel(e, scene.current)}>
+        <Labels />
+        <Knob which="light" scene={scene} />
+        <Knob which="viewer" scene={scene} />
+      </div>
+      <p class="view-note">
+        {cosine.value ? "f cos θr" : "f"} in sr⁻¹{scale.value !== "linear" && `, radius ${scale.value === "log" ? "logarithmic" : "cube root"}`}
+      </p>
+      {problem !== null && (
+        <p class="view-complaint" role="alert">
+          {problem}
+        </p>
+      )}
+      <Complaints of={complaintsOf(lobes)} />
+    </>
+  );
+}
+
+/** The names of axes, values and spikes; `place` puts them where they belong. */
+function Labels(): JSX.Element {
+  const spikes = visible.value.flatMap((f) => {
+    const { spikes } = lobes.answers.value.get(String(f.id))?.arrays ?? {};
+    return Array.from({ length: Math.floor((spikes?.length ?? 0) / 6) }, (_, k) => ({ look: `series-${f.colour}`, at: [...spikes!.subarray(6 * k, 6 * k + 3)], share: channelOf(channel.value, spikes!, 6 * k + 3) }));
+  });
+  // Where the labels are is known after the frame that follows.
+  useSignalEffect(() => void radial.value);
+  return (
+    <>
+      <span class="lobe-label" data-at="0 0 1.33">
+        n
+      </span>
+      {[0, 90, 180, 270].map((phi) => (
+        <span key={phi} class="lobe-label faint" data-at={`${1.11 * Math.cos((phi * Math.PI) / 180)} ${1.11 * Math.sin((phi * Math.PI) / 180)} 0`}>
+          {phi}°
+        </span>
+      ))}
+      {radial.value.ticks
+        .filter((t) => t.label !== "" && t.position > 0.15)
+        .map((t) => (
+          <span key={t.value} class="lobe-label faint" data-ring={t.position}>
+            {t.label}
+          </span>
+        ))}
+      {spikes.map(({ look, at, share }) => (
+        <span key={at.join()} class={`lobe-label ${look}`} data-at={at.map((x) => 1.07 * x).join(" ")}>
+          {number(share)}
+        </span>
+      ))}
+    </>
+  );
+}
+
+/** Puts the labels and handles where the frame that was drawn has their points. */
+function place(scene: LobeScene, overlay: HTMLElement, reach: number): void {
+  const put = (element: HTMLElement, v: readonly number[]): void => {
+    const { x, y, near } = scene.project(v[0]!, v[1]!, v[2]!);
+    element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+    element.classList.toggle("behind", !near);
+  };
+  for (const element of overlay.children as Iterable<Element> as Iterable<HTMLElement>) {
+    const { at, ring, which } = element.dataset;
+    if (at !== undefined) put(element, at.split(" ").map(Number));
+    else if (ring !== undefined) {
+      // Across the plane of incidence, on the side of the camera.
+      const phi = (wi.value.phi * Math.PI) / 180;
+      const side = Math.sin(scene.azimuth - phi) >= 0 ? 1 : -1;
+      put(element, [-Math.sin(phi) * side * Number(ring), Math.cos(phi) * side * Number(ring), 0]);
+    } else if (which !== undefined) {
+      const angles = which === "light" ? wi.value : wo.value;
+      if (angles !== null)
+        put(
+          element,
+          toVector(angles).map((x) => reach * x),
+        );
+    }
+  }
+}
+
+function Knob({ which, scene }: { which: "light" | "viewer"; scene: { current: LobeScene | null } }): JSX.Element | null {
+  const angles = which === "light" ? wi.value : wo.value;
+  if (angles === null) return null;
+  const set = (next: Angles): void => (which === "light" ? setWi({ theta: clamp(next.theta, 0, 89.5), phi: next.phi }) : setWo(next));
+  return (
+    <div
+      class={`lobe-knob ${which}`}
+      data-which={which}
+      tabIndex={0}
+      role="slider"
+      aria-label={which === "light" ? "Direction of incidence" : "Direction of view"}
+      aria-valuemin={0}
+      aria-valuemax={which === "light" ? 89.5 : 180}
+      aria-valuenow={angles.theta}
+      aria-valuetext={`θ ${degrees(angles.theta)}, φ ${degrees(angles.phi)}`}
+      onPointerDown={(event) => {
+        const box = event.currentTarget.parentElement!;
+        follow(event, box, (x, y) => scene.current && set(scene.current.direction(x, y, (which === "light" ? wi.value : wo.value)!)));
+      }}
+      onKeyDown={(event) => {
+        const next = event.ctrlKey || event.metaKey ? null : nudged(angles, event.key, { shift: event.shiftKey, alt: event.altKey });
+        if (next === null) return;
+        event.preventDefault();
+        event.stopPropagation();
+        set(next);
+      }}
+    >
+      <span>{which === "light" ? "ωi" : "ωo"}</span>
+    </div>
+  );
+}
+
+function turnByPointer(event: PointerEvent & { currentTarget: HTMLElement }, scene: LobeScene | null): void {
+  if (scene === null) return;
+  let last: [number, number] | null = null;
+  follow(event, event.currentTarget, (x, y) => {
+    if (last !== null) scene.turn(-0.008 * (x - last[0]), 0.008 * (y - last[1]));
+    last = [x, y];
+  });
+}
+
+function turnByKey(event: KeyboardEvent & { currentTarget: HTMLElement }, scene: LobeScene | null): void {
+  if (scene === null || event.target !== event.currentTarget || event.ctrlKey || event.metaKey) return;
+  const moves: Record<string, () => void> = {
+    ArrowLeft: () => scene.turn(-0.1, 0),
+    ArrowRight: () => scene.turn(0.1, 0),
+    ArrowUp: () => scene.turn(0, 0.1),
+    ArrowDown: () => scene.turn(0, -0.1),
+    "+": () => scene.scale(1.15),
+    "=": () => scene.scale(1.15),
+    "-": () => scene.scale(1 / 1.15),
+  };
+  if (moves[event.key] === undefined) return;
+  event.preventDefault();
+  moves[event.key]!();
+}
+
+/** Only when the view has the focus, or by pinching: else the page must be able to scroll. */
+function zoomByWheel(event: WheelEvent & { currentTarget: HTMLElement }, scene: LobeScene | null): void {
+  if (scene === null || !(event.ctrlKey || event.currentTarget.contains(document.activeElement))) return;
+  event.preventDefault();
+  scene.scale(Math.exp(-0.0015 * event.deltaY));
 }

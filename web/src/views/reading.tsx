@@ -1,0 +1,34 @@
+/** Values where the pointer is, and what could not be drawn. */
+import type { JSX } from "preact";
+import type { Operation } from "../engine/protocol";
+import { number } from "../plot/scale";
+import { visible } from "../state";
+import type { Live } from "./live";
+import { at, lines, looked } from "./plane";
+
+/** Each curve's value at the angle that the pointer is at. */
+export function Reading({ place }: { place: "corner" }): JSX.Element | null {
+  const angle = looked.value;
+  if (angle === null || lines.value.length === 0) return null;
+  return (
+    <div class={`view-reading ${place}`} aria-hidden="true">
+      <span>θr {angle.toFixed(1).replace("-", "−")}°</span>
+      {lines.value.map((line) => (
+        <span key={line.key} class={line.look}>
+          <span class="view-dot" />
+          <b>{Number.isFinite(at(line, angle)) ? number(at(line, angle), 4) : "–"}</b>
+        </span>
+      ))}
+    </div>
+  );
+}
+
+/** The complaints of functions that are shown. */
+export function complaintsOf<K extends Operation>(live: Live<K>): { colour: number; message: string; help: string | null }[] {
+  return visible.value.flatMap((f) => {
+    for (const [key, complaint] of live.complaints.value) {
+      if (key === String(f.id) || key.startsWith(`${f.id}/`)) return [{ colour: f.colour, message: complaint.message, help: complaint.help }];
+    }
+    return [];
+  });
+}
