@@ -205,10 +205,10 @@ function place(scene: LobeScene, overlay: HTMLElement, reach: number): void {
     const { at, ring, which } = element.dataset;
     if (at !== undefined) put(element, at.split(" ").map(Number));
     else if (ring !== undefined) {
-      // Across the plane of incidence, on the side of the camera.
-      const phi = (wi.value.phi * Math.PI) / 180;
-      const side = Math.sin(scene.azimuth - phi) >= 0 ? 1 : -1;
-      put(element, [-Math.sin(phi) * side * Number(ring), Math.cos(phi) * side * Number(ring), 0]);
+      // Between the spokes, about across the plane of incidence, on the side of the camera.
+      const phi = ((wi.value.phi + 105) * Math.PI) / 180;
+      const r = (Math.cos(scene.azimuth - phi) >= 0 ? 1 : -1) * Number(ring);
+      put(element, [r * Math.cos(phi), r * Math.sin(phi), 0]);
     } else if (which !== undefined) {
       const angles = which === "light" ? wi.value : wo.value;
       if (angles !== null)
