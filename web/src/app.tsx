@@ -1,5 +1,18 @@
 /** The page: the bar, the panel of functions, and a grid with a slot for each view. */
+import { signal } from "@preact/signals";
 import type { ComponentType, JSX } from "preact";
+import { useEffect } from "preact/hooks";
+import { failure } from "./engine/client";
+import { LearnPage } from "./learn-page";
+import { Bar, Notices } from "./panels/bar";
+import { Drop } from "./panels/drop";
+import { Help } from "./panels/help";
+import { Panel } from "./panels/panel";
+import { Picker } from "./panels/picker";
+import { NewShader } from "./panels/shader-new";
+import { Take } from "./panels/take";
+import { Problem } from "./panels/ui";
+import { route } from "./route";
 import { large, type ViewName } from "./state";
 import { Albedo } from "./views/albedo";
 import { Ball } from "./views/ball";
@@ -23,23 +36,67 @@ const VIEWS: { view: ViewName; name: string; Component: ComponentType }[] = [
   { view: "difference", name: "Difference", Component: Difference },
 ];
 
+/** Narrow screens show the views or the panel. */
+const pane = signal<"views" | "panel">("views");
+
+function Explore(): JSX.Element {
+  useEffect(() => {
+    const escape = (event: KeyboardEvent): void => {
+      if (event.key === "Escape" && !event.defaultPrevented && document.querySelector("dialog[open]") === null) large.value = null;
+    };
+    addEventListener("keydown", escape);
+    return () => removeEventListener("keydown", escape);
+  }, []);
+  return (
+    <div class="explore" data-pane={pane.value}>
+      <Panel />
+      <main class="main" id="views">
+        <div class="toolbar">
+          <Controls />
+        </div>
+        {failure.value !== null ? <Problem complaint={failure.value} /> : null}
+        <div class="views" data-large={large.value ?? undefined}>
+          {VIEWS.map(({ view, name, Component }) => (
+            <section key={view} class="slot" data-view={view} data-state={large.value === view ? "large" : large.value === null ? "tile" : "behind"} aria-label={name}>
+              <Component />
+            </section>
+          ))}
+        </div>
+      </main>
+      <nav class="panes" aria-label="Parts of the page">
+        {(["views", "panel"] as const).map((name) => (
+          <button key={name} type="button" aria-pressed={pane.value === name} onClick={() => (pane.value = name)}>
+            {name === "views" ? "Views" : "Functions"}
+          </button>
+        ))}
+      </nav>
+    </div>
+  );
+}
+
 export function App(): JSX.Element {
   return (
     <div class="app">
-      <header class="bar">
-        <h1>Gonio explorer</h1>
-      </header>
-      <aside class="panel" aria-label="Functions" />
-      <div class="toolbar">
-        <Controls />
-      </div>
-      <main class="views" data-large={large.value}>
-        {VIEWS.map(({ view, name, Component }) => (
-          <section key={view} class="slot" data-view={view} data-state={large.value === view ? "large" : large.value === null ? "tile" : "behind"} aria-label={name}>
-            <Component />
-          </section>
-        ))}
-      </main>
+      <a class="skip" href="#views" onClick={skip}>
+        Skip to the views
+      </a>
+      <Bar />
+      {route.value.page === "learn" ? <LearnPage /> : <Explore />}
+      <Picker />
+      <NewShader />
+      <Take />
+      <Help />
+      <Drop />
+      <Notices />
     </div>
   );
+}
+
+/** The fragment of the address holds the state: the link must not write there. */
+function skip(event: MouseEvent): void {
+  event.preventDefault();
+  const views = document.getElementById("views");
+  if (views === null) return;
+  views.tabIndex = -1;
+  views.focus();
 }

@@ -97,8 +97,10 @@ async function takeOne(file: File): Promise<void> {
       hold({ name, kind, source: null });
       light.value = `files/${name}`;
     } else {
-      await engine.ask("describe", { function: `files/${name}` }, { pool: "fast" });
-      hold({ name, kind, source: kind === "shader" ? new TextDecoder().decode(bytes) : null });
+      const reply = await engine.ask("describe", { function: `files/${name}` }, { pool: "fast" });
+      // `.brdf` is the extension of shaders and of a measured format; the library tells them apart by what they hold.
+      const shader = kind === "shader" && reply?.answer.model !== "table";
+      hold({ name, kind: shader ? "shader" : "measured", source: shader ? new TextDecoder().decode(bytes) : null });
       if (wanted === undefined) show(name);
     }
   } catch (error) {

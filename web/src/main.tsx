@@ -2,6 +2,7 @@ import { render } from "preact";
 import "./look/fonts.css";
 import "./look/tokens.css";
 import "./look/base.css";
+import "./look/controls.css";
 import "./look/app.css";
 import "./look/panel.css";
 import "./look/dialog.css";

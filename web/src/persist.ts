@@ -6,6 +6,7 @@ import { engine } from "./engine/client";
 import { held, missing, putShader } from "./files";
 import { add, remove } from "./functions";
 import { complain } from "./notices";
+import { isLearn } from "./route";
 import * as state from "./state";
 
 /** Opened without a link: a metal and a plastic show what the views are for. */
@@ -84,11 +85,10 @@ async function restore(hash: string): Promise<void> {
 
 /** Restores what the address holds, and keeps the address up to date from then on. */
 export async function persist(): Promise<void> {
-  const isPlace = (hash: string): boolean => hash.startsWith("#learn");
-  await restore(isPlace(location.hash) ? "" : location.hash);
+  await restore(isLearn(location.hash) ? "" : location.hash);
   written = location.hash;
   addEventListener("hashchange", () => {
-    if (isPlace(location.hash) || location.hash === written || location.hash === "") return;
+    if (isLearn(location.hash) || location.hash === written || location.hash === "") return;
     written = location.hash;
     void restore(location.hash);
   });
@@ -99,7 +99,7 @@ export async function persist(): Promise<void> {
     // Browsers refuse more than a hundred changes of the address in half a minute.
     timer = setTimeout(() => {
       void encode(now).then((hash) => {
-        if (isPlace(location.hash)) return;
+        if (isLearn(location.hash)) return;
         written = `#${hash}`;
         history.replaceState(null, "", written);
       });

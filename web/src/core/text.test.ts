@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { addPart, colourText, composite, fileName, filesIn, removePart, replacePart } from "./text";
+import { addPart, colourText, composite, fileName, filesIn, removePart, replacePart, shortName } from "./text";
 
 describe("parts of a composite", () => {
   it("gives settings to the model before them", () => {
@@ -55,4 +55,22 @@ describe("names of files", () => {
 it("writes colours as short as it can", () => {
   expect(colourText([0.5, 0.5, 0.5])).toBe("0.5");
   expect(colourText([0.1 + 0.2, 0, 1])).toBe("0.3/0/1");
+});
+
+describe("short names", () => {
+  const aliases = [
+    { name: "ggx", model: "torrance-sparrow", sets: [["distribution", "ggx"]] as [string, string][] },
+    { name: "beckmann", model: "torrance-sparrow", sets: [["distribution", "beckmann"]] as [string, string][] },
+    { name: "cook-torrance", model: "torrance-sparrow", sets: [["distribution", "beckmann"], ["masking", "v-cavity"]] as [string, string][] },
+  ];
+  it.each([
+    ["torrance-sparrow:distribution=ggx,metal=gold", "ggx", "metal=gold"],
+    ["torrance-sparrow:masking=v-cavity,distribution=beckmann", "cook-torrance", ""],
+    ["torrance-sparrow:distribution=gtr", "torrance-sparrow", "distribution=gtr"],
+    ["sum(lambertian:0.2, torrance-sparrow:distribution=ggx,f0=0.04)", "sum", "lambertian, ggx"],
+    ["files/mine.wgsl:tint=1/0.5/0.2", "mine.wgsl", "tint=1/0.5/0.2"],
+    ["mirror", "mirror", ""],
+  ])("of %s", (text, name, rest) => {
+    expect(shortName(text, aliases)).toEqual([name, rest]);
+  });
 });

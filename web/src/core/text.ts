@@ -118,3 +118,35 @@ export function colourText(rgb: readonly [number, number, number]): string {
   const [r, g, b] = rgb;
   return r === g && g === b ? short(r) : `${short(r)}/${short(g)}/${short(b)}`;
 }
+
+/** A name that stands for a model with some parameters set. */
+export interface Alias {
+  name: string;
+  model: string;
+  sets: [string, string][];
+}
+
+/**
+ * A description's short name and the rest of it, for lists: `torrance-sparrow:distribution=ggx,metal=gold` is `ggx`, `metal=gold`. Only for show; what is asked of the library
+ * is the whole text.
+ */
+export function shortName(text: string, aliases: readonly Alias[]): [string, string] {
+  const whole = composite(text);
+  if (whole !== null) {
+    const parts = whole.parts.map((part) => shortName(part.text, aliases)[0]);
+    return [whole.name, [...(whole.own === "" ? [] : [whole.own]), ...parts].join(", ")];
+  }
+  const plain = text.replace(/^files\//, "");
+  const colon = plain.indexOf(":");
+  if (colon < 0) return [plain, ""];
+  const model = plain.slice(0, colon);
+  const settings = plain.slice(colon + 1).split(",");
+  let best: Alias | null = null;
+  for (const alias of aliases) {
+    if (alias.model !== model || alias.sets.length <= (best?.sets.length ?? 0)) continue;
+    if (alias.sets.every(([key, value]) => settings.includes(`${key}=${value}`))) best = alias;
+  }
+  if (best === null) return [model, settings.join(", ")];
+  const implied = new Set(best.sets.map(([key, value]) => `${key}=${value}`));
+  return [best.name, settings.filter((setting) => !implied.has(setting)).join(", ")];
+}

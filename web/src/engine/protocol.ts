@@ -20,6 +20,8 @@ export type Parameter = {
   meaning: string;
   /** The allowed values in words. */
   expected: string;
+  /** Whether the description gives it; else its value is the default. */
+  given: boolean;
 } & (
   | { kind: "number"; unit: string; low: number; high: number; default: number | null; value: number | null }
   | { kind: "colour"; low: number; high: number; default: [number, number, number] | null; value: [number, number, number] | null }

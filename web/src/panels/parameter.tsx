@@ -58,7 +58,7 @@ function NumberControl({ parameter, set }: Props<"number">): JSX.Element {
   const shown = draft !== null ? Number(draft) : (parameter.value ?? parameter.default);
   const text = draft ?? (shown === null ? "" : short(shown));
   return (
-    <Row parameter={parameter} id={id} reset={parameter.value === null ? null : reset}>
+    <Row parameter={parameter} id={id} reset={parameter.given ? reset : null}>
       <div class="slider">
         <input
           id={id}
@@ -96,7 +96,7 @@ function ColourControl({ parameter, set }: Props<"colour">): JSX.Element {
   if (largest > 0 && draft === null) ratio.current = shown!.map((x) => x / largest) as [number, number, number];
   const scaled = (x: number): string => colourText(ratio.current.map((r) => r * x) as [number, number, number]);
   return (
-    <Row parameter={parameter} id={id} reset={parameter.value === null ? null : reset}>
+    <Row parameter={parameter} id={id} reset={parameter.given ? reset : null}>
       <div class="slider">
         {displayable ? (
           <input
@@ -138,7 +138,7 @@ function ChoiceControl({ parameter, set }: Props<"choice">): JSX.Element {
   const { draft, change, reset } = useDraft(parameter.name, set);
   const shown = draft ?? parameter.value ?? parameter.default ?? "";
   return (
-    <Row parameter={parameter} id={id} reset={parameter.value === null ? null : reset}>
+    <Row parameter={parameter} id={id} reset={parameter.given ? reset : null}>
       <select id={id} class="select" value={shown} onChange={(event) => (event.currentTarget.value === "" ? reset() : change(event.currentTarget.value))}>
         {parameter.default === null ? <option value="">not given</option> : null}
         {parameter.options.map((option) => (

@@ -1,0 +1,5 @@
+import type { JSX } from "preact";
+
+export function Learn(): JSX.Element {
+  return <main />;
+}

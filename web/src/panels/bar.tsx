@@ -1,0 +1,89 @@
+/** The bar above everything: where one is, and what concerns the whole page. */
+import { signal } from "@preact/signals";
+import type { JSX } from "preact";
+import { busy } from "../engine/client";
+import { complain, dismissNotice, notices } from "../notices";
+import { permanentLink } from "../persist";
+import { route } from "../route";
+import { helping } from "./help";
+import { taking } from "./take";
+import { copy, Icon, IconButton, Problem } from "./ui";
+
+type Theme = "auto" | "light" | "dark";
+const THEMES: readonly Theme[] = ["auto", "light", "dark"];
+
+function stored(): Theme {
+  const found = localStorage.getItem("theme");
+  return THEMES.find((theme) => theme === found) ?? "auto";
+}
+
+export const theme = signal<Theme>(stored());
+
+export function applyTheme(next: Theme): void {
+  theme.value = next;
+  if (next === "auto") delete document.documentElement.dataset.theme;
+  else document.documentElement.dataset.theme = next;
+  localStorage.setItem("theme", next);
+}
+
+function copyLink(): void {
+  void permanentLink().then(({ address, needs }) =>
+    copy(address, "Permanent link")
+      .then(() => {
+        if (needs.length > 0) complain({ message: `the link names ${needs.join(", ")} but can't hold so much`, help: "send the file along: the page asks for it", place: null });
+      })
+      .catch(() => (taking.value = true)),
+  );
+}
+
+export function Bar(): JSX.Element {
+  return (
+    <header class="bar">
+      <h1 class="brand">
+        <svg class="brand-mark" viewBox="0 0 32 32" aria-hidden="true">
+          <path class="brand-ground" d="M3 25h26" />
+          <path class="brand-lobe" d="M16 25C13.5 19.5 19 9.5 26 8c2.5 5.5-4 14-10 17z" />
+          <path class="brand-ray" d="M5.5 10 16 25" />
+        </svg>
+        Gonio <span class="brand-what">explorer</span>
+      </h1>
+      <nav class="nav" aria-label="Pages">
+        <a href={route.value.page === "explore" ? "#" : route.value.back} aria-current={route.value.page === "explore" ? "page" : undefined} onClick={(event) => route.value.page === "explore" && event.preventDefault()}>
+          Explore
+        </a>
+        <a href="#learn" aria-current={route.value.page === "learn" ? "page" : undefined}>
+          Learn
+        </a>
+      </nav>
+      <span class="busy" data-busy={busy.value > 0 ? "" : undefined} aria-hidden="true" />
+      <span class="spring" />
+      <button type="button" class="button bar-button" onClick={copyLink}>
+        <Icon name="share" />
+        <span class="bar-word">Copy link</span>
+      </button>
+      <button type="button" class="button bar-button" onClick={() => (taking.value = true)}>
+        <Icon name="take" />
+        <span class="bar-word">Take away</span>
+      </button>
+      <IconButton icon="theme" label={`Colours: ${theme.value}`} onClick={() => applyTheme(THEMES[(THEMES.indexOf(theme.value) + 1) % THEMES.length]!)} />
+      <IconButton icon="help" label="What this is, and the keyboard" onClick={() => (helping.value = true)} />
+    </header>
+  );
+}
+
+export function Notices(): JSX.Element {
+  return (
+    <div class="notices" aria-live="polite">
+      {notices.value.map((notice) =>
+        notice.tone === "error" ? (
+          <Problem key={notice.id} complaint={notice} subject={notice.subject} onDismiss={() => dismissNotice(notice.id)} />
+        ) : (
+          <p key={notice.id} class="done" role="status">
+            <Icon name="check" />
+            {notice.message}
+          </p>
+        ),
+      )}
+    </div>
+  );
+}
