@@ -45,8 +45,8 @@ interface Lane {
 /** Seconds after which a call is taken for hung, and its worker is replaced. */
 const LIMIT: Record<Pool, number> = { fast: 30, slow: 120, check: 900, render: 120 };
 
-/** Answered in microseconds, and all else depends on them: they go before what waits. */
-const URGENT: ReadonlySet<Operation> = new Set<Operation>(["catalogue", "describe", "set", "evaluate"]);
+/** Answered at once, while others take tens of milliseconds: they go before what waits. */
+const URGENT: ReadonlySet<Operation> = new Set<Operation>(["catalogue", "describe", "set", "evaluate", "curve"]);
 
 /** Calls that are running or waiting. */
 export const busy = signal(0);

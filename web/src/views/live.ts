@@ -6,7 +6,7 @@
 import { effect, signal, untracked } from "@preact/signals";
 import { engine, EngineError, type Pool } from "../engine/client";
 import type { Complaint, Operation, Reply, Requests } from "../engine/protocol";
-import type { Shown, ViewName } from "../state";
+import { functions, phiD, scale, type Shown, type ViewName, wi } from "../state";
 
 /** Whether a view can be seen: not scrolled away nor behind a large one. Views that can't ask for nothing. */
 export const seen: Record<ViewName, { value: boolean }> = {
@@ -19,6 +19,19 @@ export const seen: Record<ViewName, { value: boolean }> = {
   preview: signal(false),
   difference: signal(false),
 };
+
+/** How long nothing may change until pictures are made as fine as they can be shown, milliseconds. */
+const CALM = 160;
+
+/** False while something is dragged or a slider moves: what takes longer than a frame is drawn coarsely then. */
+export const settled = signal(true);
+let calm = 0;
+effect(() => {
+  void [wi.value, functions.value, phiD.value, scale.value];
+  settled.value = false;
+  clearTimeout(calm);
+  calm = setTimeout(() => (settled.value = true), CALM);
+});
 
 export interface Wish<K extends Operation> {
   key: string;

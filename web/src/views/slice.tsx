@@ -1,5 +1,218 @@
+/** The slice: f as a picture, by the angle θh of the half vector and the angle θd between it and the light (Rusinkiewicz 1998). */
+import { computed, signal } from "@preact/signals";
 import type { JSX } from "preact";
+import { useRef } from "preact/hooks";
+import { channelOf, ofValue } from "../plot/colours";
+import { clamp, fromHalfDifference, halfDifference } from "../plot/directions";
+import { beside, csvText, pngOfCanvas } from "../plot/save";
+import { type Axis, axis } from "../plot/scale";
+import { channel, phiD, type Scale, visible, wi, wo } from "../state";
+import { Bar, BAR } from "./bar";
+import { Complaints, Frame, type Size } from "./frame";
+import { follow, setWi, setWo } from "./handle";
+import { type Answer, Live, seen } from "./live";
+import { type Picture, Pictures } from "./pictures";
+import { complaintsOf } from "./reading";
+import { colour } from "./theme";
+import { useDrawn } from "./timings";
+
+export const slices = new Live("slice", "slow", () =>
+  seen.slice.value || seen.difference.value ? visible.value.map((f) => ({ key: String(f.id), shown: f, request: { function: f.text, phi_d: phiD.value } })) : null,
+);
+
+/** A slice spans more than any linear scale shows: it has a scale of its own. */
+const kind = signal<Scale>("log");
+
+/** Room for the axes. */
+const LEFT = 40;
+const BELOW = 34;
+/** The angle of the last node, degrees. */
+const STEEPEST = 89.9;
+/** The share of the values that the scale holds; the few above it, at grazing angles, have the colour of its end. */
+const HELD = 0.98;
+
+const shownAxis = computed<Axis>(() => {
+  let [least, most] = [Infinity, 0];
+  for (const { arrays } of slices.answers.value.values()) {
+    const values = arrays["values"]!;
+    const numbers: number[] = [];
+    for (let k = 0; k + 2 < values.length; k += 3) {
+      const value = channel.value === "rgb" ? Math.max(values[k]!, values[k + 1]!, values[k + 2]!) : channelOf(channel.value, values, k);
+      if (value > 0 && value < Infinity) numbers.push(value);
+    }
+    numbers.sort((a, b) => a - b);
+    if (numbers.length === 0) continue;
+    least = Math.min(least, numbers[0]!);
+    most = Math.max(most, numbers[Math.floor(HELD * (numbers.length - 1))]!);
+  }
+  return axis(kind.value, least, most);
+});
+
+const since = computed(() => Math.max(0, ...[...slices.answers.value.values()].map((a) => a.since)));
 
 export function Slice(): JSX.Element {
-  return <h2>Slice θh × θd</h2>;
+  const body = useRef<HTMLDivElement>(null);
+  return (
+    <Frame
+      view="slice"
+      title="Slice θh × θd"
+      about="f by the half angle θh (right) and the difference angle θd (up), as MERL’s materials are shown: highlights at the left, retro-reflection along the bottom, the Fresnel effect at the top left, grazing directions at the right and the top. Click to go to that pair of directions."
+      controls={
+        <>
+          <label class="phi-d">
+            φd
+            <input type="range" aria-label="Azimuth φd of the difference vector, degrees" min={0} max={180} step={1} value={phiD.value} onInput={(event) => (phiD.value = event.currentTarget.valueAsNumber)} />
+            <output>{phiD.value}°</output>
+          </label>
+          <select class="view-select" aria-label="Scale of the slice" value={kind.value} onChange={(event) => (kind.value = event.currentTarget.value as Scale)}>
+            <option value="log">log</option>
+            <option value="cube-root">∛</option>
+            <option value="linear">linear</option>
+          </select>
+        </>
+      }
+      saves={{
+        png: () => {
+          const canvases = [...(body.current?.querySelectorAll<HTMLCanvasElement>(".picture canvas") ?? [])];
+          return canvases.length > 0 ? pngOfCanvas(beside(canvases, colour("--surface"))) : null;
+        },
+        csv: table,
+      }}
+    >
+      {(size) => (
+        <div ref={body}>
+          <Drawing size={size} />
+          <Complaints of={complaintsOf(slices)} />
+        </div>
+      )}
+    </Frame>
+  );
+}
+
+function Drawing({ size }: { size: Size }): JSX.Element {
+  useDrawn("slice", since.value);
+  const scale = shownAxis.value;
+  const pictures = visible.value.flatMap((f): Picture[] => {
+    const answer = slices.answers.value.get(String(f.id));
+    if (answer === undefined) return [];
+    const { side } = answer.answer;
+    return [{ shown: f, width: side, height: side, paint: painted(answer, scale), words: `Slice of ${f.text} at φd = ${phiD.value}°` }];
+  });
+  const inner: Size = { width: size.width - LEFT - BAR, height: size.height - BELOW };
+  const barHeight = Math.max(40, inner.height - 30);
+  return (
+    <>
+      <div class="slice-place" style={{ left: `${LEFT - 6}px`, right: `${BAR}px`, bottom: `${BELOW - 6}px` }}>
+        {pictures.length > 0 && <Pictures size={inner} aspect={1} pictures={pictures} over={(cell) => <Axes cell={cell} single={pictures.length === 1} />} />}
+      </div>
+      {pictures.length > 0 && (
+        <div class="bar-place" style={{ top: "22px" }}>
+          <span class="bar-name">sr⁻¹</span>
+          <Bar height={barHeight - 8} name="f in sr⁻¹" ticks={scale.ticks} colourAt={(p) => ofValue(channel.value, scale, [scale.value(p), scale.value(p), scale.value(p)])} />
+        </div>
+      )}
+    </>
+  );
+}
+
+const painters = new WeakMap<Answer<"slice">, { axis: Axis; paint: (out: Uint8ClampedArray) => void }>();
+
+function painted(answer: Answer<"slice">, scale: Axis): (out: Uint8ClampedArray) => void {
+  const before = painters.get(answer);
+  if (before?.axis === scale) return before.paint;
+  const which = channel.value;
+  const paint = (out: Uint8ClampedArray): void => {
+    const values = answer.arrays["values"]!;
+    for (let k = 0, o = 0; k + 2 < values.length; k += 3, o += 4) {
+      // A pair of which one direction lies below the horizon is left transparent.
+      if (Number.isNaN(values[k]!)) continue;
+      const [r, g, b] = ofValue(which, scale, values, k);
+      out[o] = r;
+      out[o + 1] = g;
+      out[o + 2] = b;
+      out[o + 3] = 255;
+    }
+  };
+  painters.set(answer, { axis: scale, paint });
+  return paint;
+}
+
+/** Angles along the edges, and where the present pair of directions is. */
+function Axes({ cell, single }: { cell: Size; single: boolean }): JSX.Element {
+  const side = cell.width;
+  const at = (degrees: number): number => (clamp(degrees, 0, STEEPEST) / STEEPEST) * side;
+  const steps = side > 170 ? [0, 15, 30, 45, 60, 75, 90] : [0, 30, 60, 90];
+  const go = (x: number, y: number): void => {
+    const pair = fromHalfDifference(clamp((x / side) * STEEPEST, 0, STEEPEST), clamp((1 - y / side) * STEEPEST, 0, STEEPEST), phiD.value, wi.value.phi - phiD.value);
+    if (pair === null) return;
+    setWi(pair.wi);
+    setWo(pair.wo);
+  };
+  const pair = wo.value === null ? null : halfDifference(wi.value, wo.value);
+  return (
+    <svg
+      class="over plot slice-axes"
+      viewBox={`0 0 ${side} ${side}`}
+      width={side}
+      height={side}
+      role="group"
+      aria-label="Half angle θh to the right, difference angle θd upwards"
+      onPointerDown={(event) => {
+        const box = event.currentTarget.getBoundingClientRect();
+        go(event.clientX - box.left, event.clientY - box.top);
+        if (event.pointerType === "mouse") follow(event, event.currentTarget, go);
+      }}
+    >
+      <rect class="rim" x={0} y={0} width={side} height={side} />
+      {steps.map((t) => (
+        <g key={t}>
+          <line class="rim" x1={at(t)} x2={at(t)} y1={side} y2={side + 4} />
+          <line class="rim" x1={-4} x2={0} y1={side - at(t)} y2={side - at(t)} />
+          {single && (
+            <>
+              <text class="tick" x={at(t)} y={side + 12}>
+                {t}°
+              </text>
+              {t > 0 && (
+                <text class="tick end" x={-7} y={side - at(t)}>
+                  {t}°
+                </text>
+              )}
+            </>
+          )}
+        </g>
+      ))}
+      <text class="axis-name" x={side / 2} y={side + (single ? 25 : 15)} text-anchor="middle">
+        half angle θh
+      </text>
+      {single && (
+        <text class="axis-name" transform={`translate(-33 ${side / 2}) rotate(-90)`} text-anchor="middle">
+          difference angle θd
+        </text>
+      )}
+      {pair !== null && (pair.thetaH < 0.1 || pair.thetaD < 0.1 || angleApart(pair.phiD, phiD.value) < 1) && <circle class="slice-mark" cx={at(pair.thetaH)} cy={side - at(pair.thetaD)} r={5} />}
+    </svg>
+  );
+}
+
+/** How far two φd are apart: they are the same after half a turn. */
+function angleApart(a: number, b: number): number {
+  const d = (((a - b) % 180) + 180) % 180;
+  return Math.min(d, 180 - d);
+}
+
+function table(): string | null {
+  const rows: number[][] = [];
+  visible.value.forEach((f, index) => {
+    const answer = slices.answers.value.get(String(f.id));
+    if (answer === undefined) return;
+    const { side } = answer.answer;
+    const values = answer.arrays["values"]!;
+    for (let k = 0; k < side * side; k += 1) {
+      if (Number.isNaN(values[3 * k]!)) continue;
+      const node = (n: number): number => (n * STEEPEST) / (side - 1);
+      rows.push([index + 1, node(k % side), node(side - 1 - Math.floor(k / side)), ...values.subarray(3 * k, 3 * k + 3)]);
+    }
+  });
+  return rows.length > 0 ? csvText(["function", "theta_h_deg", "theta_d_deg", "red", "green", "blue"], rows) : null;
 }

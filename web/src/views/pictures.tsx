@@ -1,0 +1,73 @@
+/** Pictures of several functions side by side, each with its name. */
+import type { ComponentChildren, JSX } from "preact";
+import { useLayoutEffect, useRef } from "preact/hooks";
+import type { Shown } from "../state";
+import type { Size } from "./frame";
+
+/** Room for a name above a picture. */
+const NAME = 20;
+const GAP = 8;
+
+/** Columns and cell size for `count` pictures of an aspect, as large as can be. */
+export function grid(count: number, { width, height }: Size, aspect: number): { columns: number; cell: Size } {
+  const name = count > 1 ? NAME : 0;
+  let best = { columns: 1, cell: { width: 0, height: 0 } };
+  for (let columns = 1; columns <= Math.max(1, count); columns += 1) {
+    const rows = Math.ceil(count / columns);
+    const w = (width - GAP * (columns + 1)) / columns;
+    const h = (height - GAP * (rows + 1)) / rows - name;
+    const cell = { width: Math.floor(Math.min(w, h * aspect)), height: Math.floor(Math.min(w, h * aspect) / aspect) };
+    if (cell.width > best.cell.width) best = { columns, cell };
+  }
+  return best;
+}
+
+export interface Picture {
+  shown: Shown;
+  /** Pixels of the picture itself. */
+  width: number;
+  height: number;
+  /** Draws it into sRGB, 4 codes a pixel. */
+  paint: (out: Uint8ClampedArray) => void;
+  /** What it shows, for those who can't see it. */
+  words: string;
+}
+
+export function Pictures({ size, aspect, pictures, over }: { size: Size; aspect: number; pictures: Picture[]; over?: (cell: Size, picture: Picture) => ComponentChildren }): JSX.Element {
+  const { columns, cell } = grid(pictures.length, size, aspect);
+  return (
+    <div class="pictures" style={{ gridTemplateColumns: `repeat(${columns}, ${cell.width}px)` }}>
+      {cell.width > 8 &&
+        pictures.map((picture) => (
+          <figure key={picture.shown.id} class="picture">
+            {pictures.length > 1 && <Name shown={picture.shown} width={cell.width} />}
+            <div class="picture-place" style={{ width: `${cell.width}px`, height: `${cell.height}px` }}>
+              <Pixels picture={picture} cell={cell} />
+              {over?.(cell, picture)}
+            </div>
+          </figure>
+        ))}
+    </div>
+  );
+}
+
+export function Name({ shown, width }: { shown: Shown; width: number }): JSX.Element {
+  return (
+    <figcaption class={`picture-name series-${shown.colour}`} style={{ maxWidth: `${width}px` }} title={shown.text}>
+      <span class="view-dot" />
+      <span class="picture-text">{shown.text}</span>
+    </figcaption>
+  );
+}
+
+function Pixels({ picture, cell }: { picture: Picture; cell: Size }): JSX.Element {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const { width, height, paint } = picture;
+  useLayoutEffect(() => {
+    const context = canvas.current!.getContext("2d")!;
+    const image = context.createImageData(width, height);
+    paint(image.data);
+    context.putImageData(image, 0, 0);
+  }, [width, height, paint]);
+  return <canvas ref={canvas} width={width} height={height} role="img" aria-label={picture.words} style={{ width: `${cell.width}px`, height: `${cell.height}px` }} />;
+}
