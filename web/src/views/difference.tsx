@@ -1,5 +1,289 @@
+/** By how much a second function differs from a first: over the directions of reflection, and over the slice. */
+import { computed } from "@preact/signals";
 import type { JSX } from "preact";
+import { useRef } from "preact/hooks";
+import { channelOf, ofDifference } from "../plot/colours";
+import { clamp, fromDisc, fromHalfDifference, nudged, onDisc, STEEPEST } from "../plot/directions";
+import { beside, csvText, pngOfCanvas } from "../plot/save";
+import { degrees, number, roundUp } from "../plot/scale";
+import { channel, cosine, difference, phiD, type Shown, visible, wi, wo } from "../state";
+import { Bar, BAR } from "./bar";
+import { Complaints, Frame, type Size } from "./frame";
+import { Handle, setWi, setWo } from "./handle";
+import { Live, seen, settled } from "./live";
+import { Pixels } from "./pictures";
+import { complaintsOf } from "./reading";
+import { slices } from "./slice";
+import { colour } from "./theme";
+import { useDrawn } from "./timings";
+
+/** Values along the diameter of the hemisphere: while something moves, and then. */
+const COARSE = 72;
+const FINE = 181;
+/** The angle of a slice's last node, degrees. */
+const LAST = 89.9;
+
+/** The two that are compared: those that were chosen, or the first two that are shown. */
+const pair = computed<[Shown, Shown] | null>(() => {
+  const all = visible.value;
+  const chosen = difference.value?.map((id) => all.find((f) => f.id === id)) ?? [];
+  const [a = all[0], b = all.find((f) => f.id !== a?.id)] = chosen;
+  return a === undefined || b === undefined || a.id === b.id ? null : [a, b];
+});
+
+const hemispheres = new Live("hemisphere", "fast", () =>
+  seen.difference.value
+    ? (pair.value ?? []).map((f) => ({
+        key: String(f.id),
+        shown: f,
+        request: { function: f.text, wi: wi.value, size: settled.value ? FINE : COARSE, cosine: cosine.value },
+      }))
+    : null,
+);
+
+/** Differences over a square of values; NaN where there are no directions. */
+interface Field {
+  side: number;
+  values: Float32Array;
+  /** Index of the largest; −1 where there is none. */
+  largest: number;
+  paint: (out: Uint8ClampedArray) => void;
+}
+
+function field(a: Float32Array, b: Float32Array, side: number): Field {
+  const values = new Float32Array(side * side);
+  let largest = -1;
+  for (let k = 0; k < values.length; k += 1) {
+    const [x, y] = [channelOf(channel.value, a, 3 * k), channelOf(channel.value, b, 3 * k)];
+    const most = Math.max(Math.abs(x), Math.abs(y));
+    values[k] = most === 0 ? 0 : (y - x) / most;
+    if (Number.isFinite(values[k]!) && (largest < 0 || Math.abs(values[k]!) > Math.abs(values[largest]!))) largest = k;
+  }
+  return { side, values, largest, paint: () => undefined };
+}
+
+const fields = computed<{ sphere: Field | null; slice: Field | null; end: number; since: number }>(() => {
+  const both = pair.value;
+  const [a, b] = (both ?? []).map((f) => hemispheres.answers.value.get(String(f.id)));
+  const [c, d] = (both ?? []).map((f) => slices.answers.value.get(String(f.id)));
+  const sphere = a && b && a.request.size === b.request.size ? field(a.arrays["values"]!, b.arrays["values"]!, a.request.size) : null;
+  const slice = c && d && c.request.phi_d === d.request.phi_d ? field(c.arrays["values"]!, d.arrays["values"]!, c.answer.side) : null;
+  const most = Math.max(0, ...[sphere, slice].map((f) => (f === null || f.largest < 0 ? 0 : Math.abs(f.values[f.largest]!))));
+  const end = most === 0 ? 1 : Math.min(1, roundUp(most));
+  for (const f of [sphere, slice]) {
+    if (f === null) continue;
+    f.paint = (out) => {
+      for (let k = 0; k < f.values.length; k += 1) {
+        if (!Number.isNaN(f.values[k]!)) out.set([...ofDifference(f.values[k]! / end), 255], 4 * k);
+      }
+    };
+  }
+  return { sphere, slice, end, since: Math.max(0, a?.since ?? 0, b?.since ?? 0) };
+});
 
 export function Difference(): JSX.Element {
-  return <h2>Difference</h2>;
+  const body = useRef<HTMLDivElement>(null);
+  return (
+    <Frame
+      view="difference"
+      title="Difference"
+      about="(f₂ − f₁) / max(|f₁|, |f₂|): red where the second function is larger, blue where it is smaller. Left: all directions of reflection, seen from above, the normal in the middle. Right: the slice of half and difference angles. Click to look at a direction."
+      controls={pair.value !== null && visible.value.length > 2 && <Choice pair={pair.value} />}
+      saves={{
+        png: () => {
+          const canvases = [...(body.current?.querySelectorAll<HTMLCanvasElement>(".picture-place canvas") ?? [])];
+          return canvases.length > 0 ? pngOfCanvas(beside(canvases, colour("--surface"))) : null;
+        },
+        csv: table,
+      }}
+    >
+      {(size) => (
+        <div ref={body}>
+          {pair.value === null ? <p class="view-empty">Two functions that are shown are compared here.</p> : <Drawing size={size} pair={pair.value} />}
+          <Complaints of={[...complaintsOf(hemispheres), ...complaintsOf(slices)].slice(0, 2)} />
+        </div>
+      )}
+    </Frame>
+  );
+}
+
+function Choice({ pair: [a, b] }: { pair: [Shown, Shown] }): JSX.Element {
+  const select = (label: string, value: Shown, set: (id: number) => void): JSX.Element => (
+    <select class={`view-select series-${value.colour}`} aria-label={label} value={value.id} onChange={(event) => set(Number(event.currentTarget.value))}>
+      {visible.value.map((f) => (
+        <option key={f.id} value={f.id}>
+          {f.text}
+        </option>
+      ))}
+    </select>
+  );
+  // Choosing the other one exchanges the two.
+  return (
+    <div class="choice">
+      {select("First function", a, (id) => (difference.value = id === b.id ? [b.id, a.id] : [id, b.id]))}
+      <span>→</span>
+      {select("Second function", b, (id) => (difference.value = id === a.id ? [b.id, a.id] : [a.id, id]))}
+    </div>
+  );
+}
+
+function Drawing({ size, pair: [a, b] }: { size: Size; pair: [Shown, Shown] }): JSX.Element {
+  const { sphere, slice, end, since } = fields.value;
+  useDrawn("difference", since);
+  const below = 40;
+  const upright = size.height > 1.3 * size.width;
+  const side = Math.floor(Math.max(40, upright ? Math.min(size.width - BAR - 24, (size.height - 2 * below - 40) / 2) : Math.min((size.width - BAR - 36) / 2, size.height - below - 32)));
+  const colourAt = (p: number): [number, number, number] => ofDifference(2 * p - 1);
+  return (
+    <div class={`difference${upright ? " upright" : ""}`}>
+      {sphere !== null && (
+        <Panel name="Reflection" field={sphere} side={side} place={placeOnDisc(sphere)} over={<Disc side={side} />} words={`Difference of ${b.text} from ${a.text} over the directions of reflection`} />
+      )}
+      {slice !== null && (
+        <Panel name={`Slice, φd = ${phiD.value}°`} field={slice} side={side} place={placeOnSlice(slice)} over={<Edge side={side} slice={slice} />} words={`Difference of ${b.text} from ${a.text} over the slice`} />
+      )}
+      {(sphere ?? slice) !== null && (
+        <div class="bar-place" style={{ top: "26px" }}>
+          <Bar height={Math.max(60, Math.min(side, size.height - 80))} name="differences" ticks={[-1, -0.5, 0, 0.5, 1].map((t) => ({ position: (t + 1) / 2, label: percent(t * end) }))} colourAt={colourAt} />
+        </div>
+      )}
+    </div>
+  );
+}
+
+const percent = (x: number): string => `${x > 0 ? "+" : ""}${number(100 * x, 2)} %`;
+
+interface Place {
+  words: string;
+  go: () => void;
+}
+
+function Panel({ name, field: { side, paint, largest, values }, side: shown, place, over, words }: { name: string; field: Field; side: number; place: Place | null; over: JSX.Element; words: string }): JSX.Element {
+  return (
+    <figure class="picture">
+      <figcaption class="picture-name">{name}</figcaption>
+      <div class="picture-place" style={{ width: `${shown}px`, height: `${shown}px` }}>
+        <Pixels picture={{ width: side, height: side, paint, words }} cell={{ width: shown, height: shown }} />
+        {over}
+      </div>
+      {place !== null && (
+        <button type="button" class="largest" style={{ maxWidth: `${shown}px` }} title={`Go to the largest difference: ${place.words}`} onClick={place.go}>
+          largest {percent(values[largest]!)}
+          <br />
+          {place.words}
+        </button>
+      )}
+    </figure>
+  );
+}
+
+function placeOnDisc({ side, largest }: Field): Place | null {
+  if (largest < 0) return null;
+  const at = (k: number): number => (2 * (k + 0.5)) / side - 1;
+  const angles = fromDisc("equidistant", at(largest % side), -at(Math.floor(largest / side)));
+  return { words: `θr ${degrees(angles.theta)}, φr ${degrees(angles.phi)}`, go: () => setWo(angles) };
+}
+
+function placeOnSlice({ side, largest }: Field): Place | null {
+  if (largest < 0) return null;
+  const node = (k: number): number => (k * LAST) / (side - 1);
+  const [thetaH, thetaD] = [node(largest % side), node(side - 1 - Math.floor(largest / side))];
+  const go = (): void => {
+    const both = fromHalfDifference(thetaH, thetaD, phiD.value, wi.value.phi - phiD.value);
+    if (both === null || both.wi.theta > STEEPEST) return;
+    setWi(both.wi);
+    setWo(both.wo);
+  };
+  return { words: `θh ${degrees(thetaH)}, θd ${degrees(thetaD)}`, go };
+}
+
+/** The hemisphere's grid, with the directions of light and view. */
+function Disc({ side }: { side: number }): JSX.Element {
+  const half = side / 2;
+  const at = (x: number, y: number): [number, number] => [x / half - 1, 1 - y / half];
+  const put = (v: [number, number]): { x: number; y: number } => ({ x: half + half * v[0], y: half - half * v[1] });
+  const view = wo.value !== null && wo.value.theta <= 90 ? wo.value : null;
+  return (
+    <svg
+      class="over plot"
+      viewBox={`0 0 ${side} ${side}`}
+      width={side}
+      height={side}
+      role="group"
+      aria-label="Directions of reflection from above"
+      onClick={(event) => {
+        if ((event.target as Element).closest(".handle") !== null) return;
+        const box = event.currentTarget.getBoundingClientRect();
+        setWo(fromDisc("equidistant", ...at(event.clientX - box.left, event.clientY - box.top)));
+      }}
+    >
+      {[30, 60].map((t) => (
+        <circle key={t} class="over-grid" cx={half} cy={half} r={(t / 90) * half} />
+      ))}
+      <circle class="rim" cx={half} cy={half} r={half - 0.5} />
+      {view !== null && (
+        <Handle
+          which="viewer"
+          {...put(onDisc("equidistant", view))}
+          angles={view}
+          moved={(x, y) => setWo(fromDisc("equidistant", ...at(x, y), view.phi))}
+          keyed={(key, by) => {
+            const next = nudged(view, key, by);
+            if (next !== null) setWo(next);
+            return next !== null;
+          }}
+        />
+      )}
+      <Handle
+        which="light"
+        {...put(onDisc("equidistant", wi.value))}
+        angles={wi.value}
+        moved={(x, y) => setWi(fromDisc("equidistant", ...at(x, y), wi.value.phi))}
+        keyed={(key, by) => {
+          const next = nudged(wi.value, key, by);
+          if (next !== null) setWi(next);
+          return next !== null;
+        }}
+      />
+    </svg>
+  );
+}
+
+function Edge({ side, slice }: { side: number; slice: Field }): JSX.Element {
+  return (
+    <svg
+      class="over plot"
+      viewBox={`0 0 ${side} ${side}`}
+      width={side}
+      height={side}
+      aria-hidden="true"
+      onClick={(event) => {
+        const box = event.currentTarget.getBoundingClientRect();
+        const node = (share: number): number => Math.round(clamp(share, 0, 1) * (slice.side - 1));
+        const index = node((event.clientY - box.top) / side) * slice.side + node((event.clientX - box.left) / side);
+        placeOnSlice({ ...slice, largest: index })?.go();
+      }}
+    >
+      <rect class="rim" x={0.5} y={0.5} width={side - 1} height={side - 1} />
+      <text class="axis-name" x={side - 4} y={side - 6} text-anchor="end">
+        θh →
+      </text>
+      <text class="axis-name" x={4} y={12}>
+        θd ↑
+      </text>
+    </svg>
+  );
+}
+
+function table(): string | null {
+  const { sphere } = fields.value;
+  if (sphere === null) return null;
+  const rows: number[][] = [];
+  for (let k = 0; k < sphere.values.length; k += 1) {
+    if (Number.isNaN(sphere.values[k]!)) continue;
+    const at = (n: number): number => (2 * (n + 0.5)) / sphere.side - 1;
+    const { theta, phi } = fromDisc("equidistant", at(k % sphere.side), -at(Math.floor(k / sphere.side)));
+    rows.push([theta, phi, sphere.values[k]!]);
+  }
+  return csvText(["theta_r_deg", "phi_r_deg", "relative_difference"], rows);
 }

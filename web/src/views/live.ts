@@ -6,7 +6,7 @@
 import { effect, signal, untracked } from "@preact/signals";
 import { engine, EngineError, type Pool } from "../engine/client";
 import type { Complaint, Operation, Reply, Requests } from "../engine/protocol";
-import { functions, phiD, scale, type Shown, type ViewName, wi } from "../state";
+import { functions, phiD, scale, type Shown, turn, type ViewName, wi } from "../state";
 
 /** Whether a view can be seen: not scrolled away nor behind a large one. Views that can't ask for nothing. */
 export const seen: Record<ViewName, { value: boolean }> = {
@@ -27,7 +27,7 @@ const CALM = 160;
 export const settled = signal(true);
 let calm = 0;
 effect(() => {
-  void [wi.value, functions.value, phiD.value, scale.value];
+  void [wi.value, functions.value, phiD.value, scale.value, turn.value];
   settled.value = false;
   clearTimeout(calm);
   calm = setTimeout(() => (settled.value = true), CALM);

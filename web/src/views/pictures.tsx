@@ -60,7 +60,7 @@ export function Name({ shown, width }: { shown: Shown; width: number }): JSX.Ele
   );
 }
 
-function Pixels({ picture, cell }: { picture: Picture; cell: Size }): JSX.Element {
+export function Pixels({ picture, cell }: { picture: Omit<Picture, "shown">; cell: Size }): JSX.Element {
   const canvas = useRef<HTMLCanvasElement>(null);
   const { width, height, paint } = picture;
   useLayoutEffect(() => {
