@@ -7,6 +7,7 @@ import { LearnPage } from "./learn-page";
 import { Bar, Notices } from "./panels/bar";
 import { Drop } from "./panels/drop";
 import { Help } from "./panels/help";
+import { Legend } from "./panels/list";
 import { Panel } from "./panels/panel";
 import { Picker } from "./panels/picker";
 import { NewShader } from "./panels/shader-new";
@@ -51,6 +52,7 @@ function Explore(): JSX.Element {
     <div class="explore" data-pane={pane.value}>
       <Panel />
       <main class="main" id="views">
+        <Legend />
         <div class="toolbar">
           <Controls />
         </div>

@@ -19,7 +19,7 @@ const CATALOGUE: Catalogue = {
   measured: [],
   languages: [],
   models: [
-    entry("ward", { summary: "a Gaussian lobe", presets: ["gold-paint", "nickel"] }),
+    entry("ward", { summary: "a Gaussian lobe", presets: ["ward@gold-paint", "ward@nickel"] }),
     entry("torrance-sparrow", { summary: "microfacets", aliases: [{ name: "ggx", sets: [["distribution", "ggx"]] }] }),
     entry("table", { summary: "a measured table", example: null }),
     entry("gold-leaf", { summary: "nothing that Ward knew" }),

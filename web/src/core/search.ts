@@ -21,7 +21,7 @@ export function choices(catalogue: Catalogue, model: string | null): Choice[] {
         found.push({ text: alias.name, name: alias.name, summary: sets === "" ? `another name of ${entry.name}` : `${entry.name} with ${sets}`, kind: "alias" });
       }
     }
-    for (const preset of entry.presets) found.push({ text: `${entry.name}@${preset}`, name: `${entry.name}@${preset}`, summary: "published parameters", kind: "preset" });
+    for (const preset of entry.presets) found.push({ text: preset, name: preset, summary: "", kind: "preset" });
   }
   return found;
 }

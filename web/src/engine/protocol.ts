@@ -40,7 +40,7 @@ export interface ModelEntry {
   positional: string | null;
   aliases: { name: string; sets: [string, string][] }[];
   recordable: boolean;
-  /** The presets' names, as in `ward@NAME`. */
+  /** Descriptions of published parameters: `ward@gold-paint`. */
   presets: string[];
   /** A description that builds with nothing more given; null for tables and shaders, which need a file. */
   example: string | null;

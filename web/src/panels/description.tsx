@@ -2,8 +2,8 @@
 import { useSignal } from "@preact/signals";
 import type { ComponentChildren, JSX } from "preact";
 import { useEffect, useId, useRef } from "preact/hooks";
-import { catalogue } from "../catalogue";
-import { addPart, composite, removePart, replacePart } from "../core/text";
+import { aliases, catalogue } from "../catalogue";
+import { addPart, composite, removePart, replacePart, shortName } from "../core/text";
 import { engine } from "../engine/client";
 import type { Complaint, Description } from "../engine/protocol";
 import { complaintOf } from "../functions";
@@ -33,7 +33,7 @@ export function TextEditor({ editing, label }: { editing: Editing; label: string
       <textarea
         id={id}
         class="code"
-        rows={Math.min(6, 1 + Math.floor(editing.text.length / 38))}
+        rows={Math.min(6, 1 + Math.floor(editing.text.length / 40))}
         spellcheck={false}
         autocapitalize="off"
         value={draft.value ?? editing.text}
@@ -163,7 +163,7 @@ function PartEditor({ editorKey, text, number, change, remove }: PartProps): JSX
     <details class="part" open>
       <summary>
         <span class="part-number">{number}</span>
-        <span class="part-name">{description.value?.model ?? text}</span>
+        <span class="part-name">{shortName(description.value?.text ?? text, aliases.value)[0]}</span>
       </summary>
       <div class="part-body">
         <div class="actions">

@@ -84,3 +84,22 @@ export function FunctionList(): JSX.Element {
     </section>
   );
 }
+
+/** The functions as a strip above the views, on screens that have no room for the panel beside them. */
+export function Legend(): JSX.Element {
+  return (
+    <ul class="legend" aria-label="Functions">
+      {functions.value.map((shown) => {
+        const [name, rest] = shortName(shown.text, aliases.value);
+        return (
+          <li key={shown.id} data-colour={shown.colour}>
+            <button type="button" aria-pressed={shown.visible} title={`${name} ${rest}`} onClick={() => setVisible(shown.id, !shown.visible)}>
+              <span class="key" />
+              {name}
+            </button>
+          </li>
+        );
+      })}
+    </ul>
+  );
+}

@@ -1,6 +1,6 @@
 /** One parameter: the control that its declaration asks for. */
 import { useSignal } from "@preact/signals";
-import type { JSX } from "preact";
+import type { ComponentChildren, JSX } from "preact";
 import { useId, useRef } from "preact/hooks";
 import { colourText, short } from "../core/text";
 import { fromHex, position, toHex, value } from "../core/scales";
@@ -34,17 +34,27 @@ function useDraft(name: string, set: Set): { draft: string | null; change: (text
   return { draft: draft.value, change, reset };
 }
 
-function Row({ parameter, id, reset, children }: { parameter: Parameter; id: string; reset: (() => void) | null; children: JSX.Element }): JSX.Element {
+interface RowProps {
+  parameter: Parameter;
+  id: string;
+  reset: (() => void) | null;
+  /** The value as text, at the end of the first line. */
+  figure?: JSX.Element;
+  children: ComponentChildren;
+}
+
+function Row({ parameter, id, reset, figure, children }: RowProps): JSX.Element {
   return (
     <div class={`parameter ${reset === null ? "" : "parameter-set"}`}>
       <div class="parameter-head">
         <label for={id}>{parameter.name}</label>
-        {parameter.kind === "number" && parameter.unit !== "" ? <span class="unit">{parameter.unit}</span> : null}
-        <span class="spring" />
-        {reset !== null ? <IconButton icon="reset" label={`${parameter.name}: back to the default`} onClick={reset} /> : null}
         <Hint about={parameter.name}>
           {parameter.meaning}. <span class="quiet">Expected: {parameter.expected}.</span>
         </Hint>
+        <span class="spring" />
+        {reset !== null ? <IconButton icon="reset" label={`${parameter.name}: back to the default`} onClick={reset} /> : null}
+        {figure}
+        {parameter.kind === "number" && parameter.unit !== "" ? <span class="unit">{parameter.unit}</span> : null}
       </div>
       {children}
     </div>
@@ -58,30 +68,41 @@ function NumberControl({ parameter, set }: Props<"number">): JSX.Element {
   const shown = draft !== null ? Number(draft) : (parameter.value ?? parameter.default);
   const text = draft ?? (shown === null ? "" : short(shown));
   return (
-    <Row parameter={parameter} id={id} reset={parameter.given ? reset : null}>
-      <div class="slider">
-        <input
-          id={id}
-          type="range"
-          min={0}
-          max={1}
-          step={0.001}
-          value={shown === null ? 0 : position(shown, low, high)}
-          aria-valuetext={shown === null ? "not given" : `${short(shown)} ${parameter.unit}`}
-          data-unset={shown === null ? "" : undefined}
-          onInput={(event) => change(short(value(Number(event.currentTarget.value), low, high)))}
-        />
-        <input
-          type="text"
-          inputMode="decimal"
-          class="figure"
-          aria-label={`${parameter.name}, as a number`}
-          placeholder="–"
-          value={text}
-          onChange={(event) => change(event.currentTarget.value.trim())}
-        />
-      </div>
+    <Row
+      parameter={parameter}
+      id={id}
+      reset={parameter.given ? reset : null}
+      figure={<Figure label={`${parameter.name}, as a number`} text={text} change={change} />}
+    >
+      <input
+        id={id}
+        type="range"
+        min={0}
+        max={1}
+        step={0.001}
+        value={shown === null ? 0 : position(shown, low, high)}
+        aria-valuetext={shown === null ? "not given" : `${short(shown)} ${parameter.unit}`}
+        data-unset={shown === null ? "" : undefined}
+        onInput={(event) => change(short(value(Number(event.currentTarget.value), low, high)))}
+      />
     </Row>
+  );
+}
+
+/** A value as text. What isn't understood stays until it is left, beside the library's complaint. */
+function Figure({ id, label, text, change, colour = false }: { id?: string; label?: string; text: string; change: (text: string) => void; colour?: boolean }): JSX.Element {
+  return (
+    <input
+      id={id}
+      type="text"
+      class={colour ? "figure figure-colour" : "figure"}
+      aria-label={label}
+      placeholder="–"
+      spellcheck={false}
+      autocomplete="off"
+      value={text}
+      onChange={(event) => change(event.currentTarget.value.trim())}
+    />
   );
 }
 
@@ -96,18 +117,23 @@ function ColourControl({ parameter, set }: Props<"colour">): JSX.Element {
   if (largest > 0 && draft === null) ratio.current = shown!.map((x) => x / largest) as [number, number, number];
   const scaled = (x: number): string => colourText(ratio.current.map((r) => r * x) as [number, number, number]);
   return (
-    <Row parameter={parameter} id={id} reset={parameter.given ? reset : null}>
-      <div class="slider">
-        {displayable ? (
-          <input
-            type="color"
-            class="swatch"
-            aria-label={`${parameter.name}, chosen by eye`}
-            value={toHex(shown ?? [0, 0, 0])}
-            onInput={(event) => change(colourText(fromHex(event.currentTarget.value)))}
-          />
-        ) : null}
-        {low >= 0 ? (
+    <Row
+      parameter={parameter}
+      id={id}
+      reset={parameter.given ? reset : null}
+      figure={<Figure id={id} text={draft ?? (shown === null ? "" : colourText(shown))} change={change} colour />}
+    >
+      {low >= 0 ? (
+        <div class="slider">
+          {displayable ? (
+            <input
+              type="color"
+              class="swatch"
+              aria-label={`${parameter.name}, chosen by eye`}
+              value={toHex(shown ?? [0, 0, 0])}
+              onInput={(event) => change(colourText(fromHex(event.currentTarget.value)))}
+            />
+          ) : null}
           <input
             type="range"
             min={0}
@@ -119,16 +145,8 @@ function ColourControl({ parameter, set }: Props<"colour">): JSX.Element {
             data-unset={shown === null ? "" : undefined}
             onInput={(event) => change(scaled(value(Number(event.currentTarget.value), low, high)))}
           />
-        ) : null}
-        <input
-          id={id}
-          type="text"
-          class={`figure figure-colour ${low < 0 ? "figure-wide" : ""}`}
-          placeholder="r/g/b"
-          value={draft ?? (shown === null ? "" : colourText(shown))}
-          onChange={(event) => change(event.currentTarget.value.trim())}
-        />
-      </div>
+        </div>
+      ) : null}
     </Row>
   );
 }

@@ -53,7 +53,7 @@ function Open({ picking }: { picking: Picking }): JSX.Element {
     <Dialog title={picking.title} onClose={close}>
       <input
         ref={input}
-        type="search"
+        type="text"
         class="field picker-search"
         {...COMBOBOX}
         aria-label="Search models, aliases and presets"
@@ -84,7 +84,7 @@ function Open({ picking }: { picking: Picking }): JSX.Element {
           >
             <span class="picker-name">{choice.name}</span>
             <span class="picker-kind">{choice.kind === "model" ? "" : choice.kind}</span>
-            <span class="picker-summary">{choice.summary}</span>
+            {choice.summary !== "" ? <span class="picker-summary">{choice.summary}</span> : null}
           </li>
         ))}
       </ul>

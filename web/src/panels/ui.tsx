@@ -92,6 +92,7 @@ export async function copy(text: string, what: string): Promise<void> {
 
 /** Text to take away: shown, and copied by a button. */
 export function Copyable({ label, text }: { label: string; text: string }): JSX.Element {
+  const rows = text.trimEnd().split("\n").reduce((sum, line) => sum + Math.max(1, Math.ceil(line.length / 84)), 0);
   const field = useRef<HTMLTextAreaElement>(null);
   const copyIt = (): void => {
     copy(text, label).catch(() => {
@@ -104,7 +105,7 @@ export function Copyable({ label, text }: { label: string; text: string }): JSX.
     <label class="copyable">
       <span class="copyable-label">{label}</span>
       <span class="copyable-row">
-        <textarea ref={field} class="code" readOnly rows={Math.min(12, text.split("\n").length)} value={text} spellcheck={false} />
+        <textarea ref={field} class="code" readOnly rows={Math.min(12, rows)} value={text.trimEnd()} spellcheck={false} />
         <button type="button" class="button" onClick={copyIt} aria-label={`Copy: ${label}`}>
           <Icon name="copy" />
           Copy

@@ -32,9 +32,10 @@ function angles(direction: WitnessDirection): Angles {
   return { theta: direction.theta_deg, phi: direction.phi_deg };
 }
 
+/** θ, φ. */
 function degrees(a: Angles): string {
-  const one = (x: number): string => String(Math.round(x * 10) / 10).replace("-", "−");
-  return `θ ${one(a.theta)}°, φ ${one(a.phi)}°`;
+  const one = (x: number): string => `${String(Math.round(x * 10) / 10).replace("-", "−")}°`;
+  return `${one(a.theta)}, ${one(a.phi)}`;
 }
 
 /** Takes every view to the witness. The views show light from above only. */
@@ -104,7 +105,7 @@ export function Verdicts({ shown }: { shown: Shown }): JSX.Element {
         </label>
         <Hint about="verdicts">
           Each property is tested at many directions by the same code as <code>gonio brdf check</code>. A fail names the worst pair of directions: its witness. Go to it, and every view shows
-          it.
+          it. Directions are θ, φ.
         </Hint>
       </div>
       {problem.value !== null ? <Problem complaint={problem.value} /> : null}
@@ -161,11 +162,11 @@ function Row({ verdict }: { verdict: Verdict }): JSX.Element {
         </div>
       </details>
       {witness !== null ? (
-        <button type="button" class="witness" onClick={() => goTo(verdict)}>
+        <button type="button" class="witness" title="Show this pair of directions (θ, φ) in every view" onClick={() => goTo(verdict)}>
           <Icon name="go" />
           <span>
             <span class="hidden">Go to the witness of {name}: </span>
-            {witness.wi !== null ? `light ${degrees(angles(witness.wi))} → viewer ${degrees(angles(witness.wo))}` : `direction ${degrees(angles(witness.wo))}`}
+            {witness.wi !== null ? `ωi ${degrees(angles(witness.wi))} → ωo ${degrees(angles(witness.wo))}` : `ω ${degrees(angles(witness.wo))}`}
           </span>
         </button>
       ) : null}
