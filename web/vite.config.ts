@@ -1,4 +1,5 @@
 import { defineConfig } from "vite";
+import { collect, licenses } from "./licenses";
 
 export default defineConfig({
   // Relative addresses: the site works in any folder of any server.
@@ -11,5 +12,6 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 700,
   },
-  worker: { format: "es" },
+  plugins: [collect(), licenses()],
+  worker: { format: "es", plugins: () => [collect()] },
 });

@@ -9,6 +9,7 @@ import { engine } from "./engine/client";
 import type { Complaint } from "./engine/protocol";
 import { add, complaintOf, MOST, refresh } from "./functions";
 import { complain, say } from "./notices";
+import { tab } from "./panels/tab";
 import { functions, light } from "./state";
 
 export type Kind = "measured" | "shader" | "panorama";
@@ -54,7 +55,7 @@ function hold(file: Held): void {
 
 /** The library's error speaks of the file by its place in the folder. */
 function renamed(complaint: Complaint, from: string, to: string): Complaint {
-  const replace = (text: string): string => text.split(`files/${from}`).join(to);
+  const replace = (text: string): string => text.split(`files/${from}`).join(to).replace(`${to}: `, "");
   return { ...complaint, message: replace(complaint.message), help: complaint.help === null ? null : replace(complaint.help) };
 }
 
@@ -107,7 +108,10 @@ async function takeOne(file: File): Promise<void> {
     // A shader with a mistake is still worth an editor: its text is kept, and the error stands at its line.
     if (kind === "shader" && complaintOf(error).place !== null) {
       hold({ name, kind, source: new TextDecoder().decode(bytes) });
-      if (show(name)) return;
+      if (show(name)) {
+        tab.value = "source";
+        return;
+      }
     }
     complain(renamed(complaintOf(error), name, file.name), file.name);
     return;
@@ -133,7 +137,7 @@ export function createShader(name: string, source: string): void {
   }
   const free = fileName(name, (taken) => engine.hasFile(taken));
   putShader(free, source);
-  show(free);
+  if (show(free)) tab.value = "source";
 }
 
 export function putShader(name: string, source: string): void {

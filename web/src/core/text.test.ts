@@ -69,6 +69,7 @@ describe("short names", () => {
     ["torrance-sparrow:distribution=gtr", "torrance-sparrow", "distribution=gtr"],
     ["sum(lambertian:0.2, torrance-sparrow:distribution=ggx,f0=0.04)", "sum", "lambertian, ggx"],
     ["files/mine.wgsl:tint=1/0.5/0.2", "mine.wgsl", "tint=1/0.5/0.2"],
+    ["table:file=files/paint.binary,scale=2", "paint.binary", "scale=2"],
     ["mirror", "mirror", ""],
   ])("of %s", (text, name, rest) => {
     expect(shortName(text, aliases)).toEqual([name, rest]);

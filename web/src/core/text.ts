@@ -146,6 +146,9 @@ export function shortName(text: string, aliases: readonly Alias[]): [string, str
     if (alias.model !== model || alias.sets.length <= (best?.sets.length ?? 0)) continue;
     if (alias.sets.every(([key, value]) => settings.includes(`${key}=${value}`))) best = alias;
   }
+  // Of tables and shaders the file is the name.
+  const file = settings.find((setting) => setting.startsWith("file="));
+  if (file !== undefined) return [file.replace(/^file=(files\/)?/, ""), settings.filter((setting) => setting !== file).join(", ")];
   if (best === null) return [model, settings.join(", ")];
   const implied = new Set(best.sets.map(([key, value]) => `${key}=${value}`));
   return [best.name, settings.filter((setting) => !implied.has(setting)).join(", ")];

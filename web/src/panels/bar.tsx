@@ -1,5 +1,5 @@
 /** The bar above everything: where one is, and what concerns the whole page. */
-import { signal } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { busy } from "../engine/client";
 import { complain, dismissNotice, notices } from "../notices";
@@ -13,17 +13,28 @@ type Theme = "auto" | "light" | "dark";
 const THEMES: readonly Theme[] = ["auto", "light", "dark"];
 
 function stored(): Theme {
-  const found = localStorage.getItem("theme");
-  return THEMES.find((theme) => theme === found) ?? "auto";
+  try {
+    const found = localStorage.getItem("theme");
+    return THEMES.find((theme) => theme === found) ?? "auto";
+  } catch {
+    return "auto";
+  }
 }
 
-export const theme = signal<Theme>(stored());
+const theme = signal<Theme>(stored());
 
-export function applyTheme(next: Theme): void {
-  theme.value = next;
-  if (next === "auto") delete document.documentElement.dataset.theme;
-  else document.documentElement.dataset.theme = next;
-  localStorage.setItem("theme", next);
+effect(() => {
+  if (theme.value === "auto") delete document.documentElement.dataset.theme;
+  else document.documentElement.dataset.theme = theme.value;
+});
+
+function nextTheme(): void {
+  theme.value = THEMES[(THEMES.indexOf(theme.value) + 1) % THEMES.length]!;
+  try {
+    localStorage.setItem("theme", theme.value);
+  } catch {
+    // Where storage is refused the choice holds for this visit.
+  }
 }
 
 function copyLink(): void {
@@ -65,7 +76,7 @@ export function Bar(): JSX.Element {
         <Icon name="take" />
         <span class="bar-word">Take away</span>
       </button>
-      <IconButton icon="theme" label={`Colours: ${theme.value}`} onClick={() => applyTheme(THEMES[(THEMES.indexOf(theme.value) + 1) % THEMES.length]!)} />
+      <IconButton icon="theme" label={`Colours: ${theme.value}`} onClick={nextTheme} />
       <IconButton icon="help" label="What this is, and the keyboard" onClick={() => (helping.value = true)} />
     </header>
   );

@@ -59,7 +59,7 @@ const colours = HighlightStyle.define([
 ]);
 
 const look = EditorView.theme({
-  "&": { height: "100%", fontSize: "12px", color: "var(--ink)", backgroundColor: "var(--sunken)" },
+  "&": { flex: "1", minHeight: "0", fontSize: "12px", color: "var(--ink)", backgroundColor: "var(--sunken)" },
   ".cm-scroller": { fontFamily: "var(--mono)", lineHeight: "1.5", overflow: "auto" },
   ".cm-content": { caretColor: "var(--ink)" },
   ".cm-cursor": { borderLeftColor: "var(--ink)" },

@@ -1,5 +1,4 @@
 /** The panel beside the views: the functions, and all about the one that is selected. */
-import { signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { aliases } from "../catalogue";
 import { filesIn, shortName } from "../core/text";
@@ -9,11 +8,9 @@ import { current, type Shown } from "../state";
 import { Declarations, type Editing, Parameters, PresetButton, TextEditor } from "./description";
 import { FunctionList } from "./list";
 import { ShaderEditor } from "./shader";
+import { type Tab, tab } from "./tab";
 import { Hint, Problem } from "./ui";
 import { Verdicts } from "./verdicts";
-
-type Tab = "parameters" | "source" | "verdicts";
-const tab = signal<Tab>("parameters");
 
 export function Panel(): JSX.Element {
   const shown = current.value;
@@ -32,8 +29,7 @@ function Selected({ shown }: { shown: Shown }): JSX.Element {
     ...(shader !== undefined ? [{ id: "source" as const, name: "Source" }] : []),
     { id: "verdicts", name: "Verdicts" },
   ];
-  const broken = shader !== undefined && shown.description === null;
-  const open = broken ? "source" : tabs.some((t) => t.id === tab.value) ? tab.value : "parameters";
+  const open = tabs.some((t) => t.id === tab.value) ? tab.value : "parameters";
   const keys = (event: KeyboardEvent): void => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (step === undefined) return;
@@ -43,7 +39,7 @@ function Selected({ shown }: { shown: Shown }): JSX.Element {
     document.getElementById(`tab-${next.id}`)?.focus();
   };
   return (
-    <section class="selected" data-colour={shown.colour} aria-label={`Selected: ${shortName(shown.text, aliases.value)[0]}`}>
+    <section class="selected" data-open={open} data-colour={shown.colour} aria-label={`Selected: ${shortName(shown.text, aliases.value)[0]}`}>
       <div class="tabs" role="tablist" aria-label="About the selected function" onKeyDown={keys}>
         {tabs.map((t) => (
           <button

@@ -10,8 +10,13 @@ import { Icon, Problem, save } from "./ui";
 export function ShaderEditor({ name, complaint }: { name: string; complaint: Complaint | null }): JSX.Element {
   const host = useRef<HTMLDivElement>(null);
   const editor = useRef<Editor | null>(null);
-  const problem = useSignal<Complaint | null>(complaint);
+  /** Of the text as it is in the editor; undefined before it was edited: then the function's own complaint is about this text. */
+  const edited = useSignal<Complaint | null | undefined>(undefined);
+  const problem = edited.value === undefined ? complaint : edited.value;
   const loading = useSignal(true);
+  const shownProblem = useRef(problem);
+  shownProblem.current = problem;
+  useEffect(() => editor.current?.mark(problem), [problem]);
 
   useEffect(() => {
     let gone = false;
@@ -19,8 +24,7 @@ export function ShaderEditor({ name, complaint }: { name: string; complaint: Com
     const tried = async (text: string): Promise<void> => {
       const found = await editShader(name, text);
       if (gone || found === undefined) return;
-      problem.value = found;
-      editor.current?.mark(found);
+      edited.value = found;
     };
     void import("./editor").then(({ createEditor }) => {
       if (gone || host.current === null) return;
@@ -29,7 +33,7 @@ export function ShaderEditor({ name, complaint }: { name: string; complaint: Com
         clearTimeout(timer);
         timer = setTimeout(() => void tried(text), 60);
       });
-      editor.current.mark(problem.value);
+      editor.current.mark(shownProblem.current);
     });
     return () => {
       gone = true;
@@ -46,7 +50,7 @@ export function ShaderEditor({ name, complaint }: { name: string; complaint: Com
     <div class="shader">
       <div ref={host} class="shader-host" data-loading={loading.value ? "" : undefined} />
       <div class="shader-foot" aria-live="polite">
-        {problem.value !== null ? <Problem complaint={problem.value} /> : <p class="quiet">Drawn while you type. Tab indents; Escape, then Tab, leaves the editor.</p>}
+        {problem !== null ? <Problem complaint={problem} /> : <p class="quiet">Drawn while you type. Tab indents; Escape, then Tab, leaves the editor.</p>}
         <button type="button" class="button" onClick={() => save(name, editor.current?.text() ?? sourceOf(name) ?? "", "text/plain")}>
           <Icon name="take" />
           Save {name}
