@@ -49,9 +49,9 @@ function Explore(): JSX.Element {
     return () => removeEventListener("keydown", escape);
   }, []);
   return (
-    <div class="explore" data-pane={pane.value}>
+    <main class="explore" data-pane={pane.value}>
       <Panel />
-      <main class="main" id="views">
+      <div class="main" id="views">
         <Legend />
         <div class="toolbar">
           <Controls />
@@ -64,7 +64,7 @@ function Explore(): JSX.Element {
             </section>
           ))}
         </div>
-      </main>
+      </div>
       <nav class="panes" aria-label="Parts of the page">
         {(["views", "panel"] as const).map((name) => (
           <button key={name} type="button" aria-pressed={pane.value === name} onClick={() => (pane.value = name)}>
@@ -72,7 +72,7 @@ function Explore(): JSX.Element {
           </button>
         ))}
       </nav>
-    </div>
+    </main>
   );
 }
 

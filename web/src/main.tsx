@@ -1,3 +1,4 @@
+import { effect } from "@preact/signals";
 import { render } from "preact";
 import "./look/fonts.css";
 import "./look/tokens.css";
@@ -9,7 +10,13 @@ import "./look/dialog.css";
 import { App } from "./app";
 import { loadCatalogue } from "./catalogue";
 import { persist } from "./persist";
+import { functions } from "./state";
 
 void persist();
-void loadCatalogue();
+// After the first plots: it takes a tenth of a second, on processors that they need.
+const stop = effect(() => {
+  if (!functions.value.some((f) => f.description !== null || f.complaint !== null)) return;
+  setTimeout(() => void loadCatalogue(), 300);
+  queueMicrotask(() => stop());
+});
 render(<App />, document.getElementById("app")!);

@@ -66,6 +66,8 @@ export class Engine {
   constructor(private readonly address: string) {
     const cores = navigator.hardwareConcurrency || 2;
     this.size = { fast: 1, slow: 1, check: 1, render: Math.max(1, Math.min(4, cores - 1)) };
+    // Its script loads while the module compiles.
+    this.lanes.fast.push(this.hire("fast"));
     void this.compile();
   }
 
@@ -114,6 +116,7 @@ export class Engine {
   /** Puts a file into every worker's folder; descriptions name it `files/NAME`. */
   putFile(name: string, bytes: Uint8Array): void {
     this.files.set(name, bytes);
+    if (this.module === null) return;
     for (const pool of Object.values(this.lanes)) for (const lane of pool) this.send(lane, { kind: "file", name, bytes });
   }
 
@@ -162,6 +165,7 @@ export class Engine {
       busy.value = 0;
       return;
     }
+    for (const lane of this.lanes.fast) this.begin(lane);
     for (const pool of Object.keys(this.waiting) as Pool[]) this.pump(pool);
   }
 
@@ -203,8 +207,12 @@ export class Engine {
     const lane: Lane = { worker, job: null, watchdog: 0 };
     worker.onmessage = (event: MessageEvent<FromWorker>) => this.receive(pool, lane, event.data);
     worker.onerror = (event) => this.broken(pool, lane, event.message || "the worker could not be loaded");
-    this.send(lane, { kind: "start", module: this.module!, files: [...this.files] });
+    this.begin(lane);
     return lane;
+  }
+
+  private begin(lane: Lane): void {
+    if (this.module !== null) this.send(lane, { kind: "start", module: this.module, files: [...this.files] });
   }
 
   private receive(pool: Pool, lane: Lane, message: FromWorker): void {

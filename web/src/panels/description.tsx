@@ -17,7 +17,7 @@ export interface Editing {
   text: string;
   description: Description | null;
   /** Another text. */
-  change: (text: string) => Promise<unknown>;
+  change: (text: string) => Promise<boolean>;
   set: Set;
 }
 
@@ -46,7 +46,7 @@ export function TextEditor({ editing, label }: { editing: Editing; label: string
           const left = draft.value;
           if (left === null) return;
           void editing.change(left.trim()).then((understood) => {
-            if (understood !== false && draft.value === left) draft.value = null;
+            if (understood && draft.value === left) draft.value = null;
           });
         }}
       />
@@ -126,7 +126,7 @@ interface PartProps {
   editorKey: string;
   text: string;
   number: number;
-  change: (text: string) => Promise<unknown>;
+  change: (text: string) => Promise<boolean>;
   remove: (() => void) | null;
 }
 
@@ -149,11 +149,12 @@ function PartEditor({ editorKey, text, number, change, remove }: PartProps): JSX
     const asked = values.current;
     try {
       const reply = await engine.ask("set", { function: text, values: asked }, { pool: "fast", key: `set-part:${editorKey}` });
-      if (reply === null) return;
+      if (reply === null) return false;
       problem.value = null;
-      await change(reply.answer.text);
+      return await change(reply.answer.text);
     } catch (error) {
       problem.value = complaintOf(error);
+      return false;
     } finally {
       if (values.current === asked) values.current = {};
     }

@@ -100,7 +100,7 @@ export function createEditor(host: HTMLElement, text: string, label: string, cha
         look,
         // Tab indents; Escape and then Tab leaves, as CodeMirror's keymap has it.
         keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
-        EditorView.contentAttributes.of({ "aria-label": label }),
+        EditorView.contentAttributes.of({ "aria-label": label, tabindex: "0" }),
         EditorView.updateListener.of((update) => {
           if (update.docChanged && !replacing) changed(update.state.doc.toString());
         }),

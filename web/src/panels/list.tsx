@@ -80,7 +80,7 @@ export function FunctionList(): JSX.Element {
           }}
         />
       </div>
-      {full ? <p class="note">{MOST} functions are shown: as many as colours that can be told apart.</p> : null}
+      {full ? <p class="quiet">{MOST} functions are shown: as many as colours that can be told apart.</p> : null}
     </section>
   );
 }

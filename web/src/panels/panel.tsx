@@ -6,6 +6,7 @@ import { held } from "../files";
 import { dismiss, setText, setValues } from "../functions";
 import { current, type Shown } from "../state";
 import { Declarations, type Editing, Parameters, PresetButton, TextEditor } from "./description";
+import { FileFacts } from "./file-facts";
 import { FunctionList } from "./list";
 import { ShaderEditor } from "./shader";
 import { type Tab, tab } from "./tab";
@@ -15,10 +16,10 @@ import { Verdicts } from "./verdicts";
 export function Panel(): JSX.Element {
   const shown = current.value;
   return (
-    <aside class="panel" id="panel" aria-label="Functions and parameters">
+    <section class="panel" id="panel" aria-label="Functions and parameters">
       <FunctionList />
       {shown !== null ? <Selected key={shown.id} shown={shown} /> : null}
-    </aside>
+    </section>
   );
 }
 
@@ -68,6 +69,7 @@ function Selected({ shown }: { shown: Shown }): JSX.Element {
 
 function ParametersTab({ shown }: { shown: Shown }): JSX.Element {
   const { description } = shown;
+  const measured = held.value.filter((file) => file.kind === "measured" && filesIn(shown.text).includes(file.name));
   const editing: Editing = {
     key: String(shown.id),
     text: shown.text,
@@ -100,6 +102,9 @@ function ParametersTab({ shown }: { shown: Shown }): JSX.Element {
           </div>
         </div>
       ) : null}
+      {measured.map((file) => (
+        <FileFacts key={file.name} name={file.name} />
+      ))}
       <Parameters editing={editing} />
     </>
   );

@@ -1,14 +1,14 @@
 /** One parameter: the control that its declaration asks for. */
 import { useSignal } from "@preact/signals";
-import type { ComponentChildren, JSX } from "preact";
+import type { ComponentChildren, InputHTMLAttributes, JSX } from "preact";
 import { useId, useRef } from "preact/hooks";
 import { colourText, short } from "../core/text";
 import { fromHex, position, toHex, value } from "../core/scales";
 import type { Parameter } from "../engine/protocol";
 import { Hint, IconButton } from "./ui";
 
-/** Sets the parameter to a text, or takes it away; resolves when the library has answered. */
-export type Set = (name: string, text: string | null) => Promise<unknown>;
+/** Sets the parameter to a text, or takes it away; resolves when the library has answered, to false if it refused. */
+export type Set = (name: string, text: string | null) => Promise<boolean>;
 
 interface Props<K extends Parameter["kind"] = Parameter["kind"]> {
   parameter: Extract<Parameter, { kind: K }>;
@@ -19,19 +19,54 @@ interface Props<K extends Parameter["kind"] = Parameter["kind"]> {
  * What the control shows while the library hasn't answered yet: without it the thumb of a slider would jump back to the last answer on every
  * redraw.
  */
-function useDraft(name: string, set: Set): { draft: string | null; change: (text: string) => void; reset: () => void } {
+function useDraft(name: string, set: Set): Draft {
   const draft = useSignal<string | null>(null);
+  const refused = useSignal(false);
   const change = (text: string): void => {
     draft.value = text;
-    void set(name, text).then(() => {
-      if (draft.value === text) draft.value = null;
+    refused.value = false;
+    void set(name, text).then((understood) => {
+      if (draft.value !== text) return;
+      // What the library refused stays where it was typed, marked, beside its error.
+      if (understood === false) refused.value = true;
+      else draft.value = null;
     });
   };
   const reset = (): void => {
     draft.value = null;
+    refused.value = false;
     void set(name, null);
   };
-  return { draft: draft.value, change, reset };
+  return { draft: draft.value, refused: refused.value, change, reset };
+}
+
+interface Draft {
+  /** What was asked for and isn't answered yet, or was refused. */
+  draft: string | null;
+  refused: boolean;
+  change: (text: string) => void;
+  reset: () => void;
+}
+
+/** A slider over 0…1; arrows go a hundredth of its range, with Shift a tenth. */
+function Slider({ at, change, ...rest }: { at: number; change: (at: number) => void } & InputHTMLAttributes<HTMLInputElement>): JSX.Element {
+  return (
+    <input
+      {...(rest as object)}
+      type="range"
+      min={0}
+      max={1}
+      step={0.001}
+      value={at}
+      onInput={(event) => change(Number(event.currentTarget.value))}
+      onKeyDown={(event) => {
+        const step = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+        if (step === undefined) return;
+        event.preventDefault();
+        change(Math.min(1, Math.max(0, at + step * (event.shiftKey ? 0.1 : 0.01))));
+      }}
+    />
+  );
 }
 
 interface RowProps {
@@ -63,40 +98,46 @@ function Row({ parameter, id, reset, figure, children }: RowProps): JSX.Element 
 
 function NumberControl({ parameter, set }: Props<"number">): JSX.Element {
   const id = useId();
-  const { draft, change, reset } = useDraft(parameter.name, set);
+  const { draft, refused, change, reset } = useDraft(parameter.name, set);
   const { low, high } = parameter;
-  const shown = draft !== null ? Number(draft) : (parameter.value ?? parameter.default);
+  const shown = draft !== null && !refused ? Number(draft) : (parameter.value ?? parameter.default);
   const text = draft ?? (shown === null ? "" : short(shown));
   return (
     <Row
       parameter={parameter}
       id={id}
       reset={parameter.given ? reset : null}
-      figure={<Figure label={`${parameter.name}, as a number`} text={text} change={change} />}
+      figure={<Figure label={`${parameter.name}, as a number`} text={text} refused={refused} change={change} />}
     >
-      <input
+      <Slider
         id={id}
-        type="range"
-        min={0}
-        max={1}
-        step={0.001}
-        value={shown === null ? 0 : position(shown, low, high)}
+        at={shown === null ? 0 : position(shown, low, high)}
         aria-valuetext={shown === null ? "not given" : `${short(shown)} ${parameter.unit}`}
         data-unset={shown === null ? "" : undefined}
-        onInput={(event) => change(short(value(Number(event.currentTarget.value), low, high)))}
+        change={(at) => change(short(value(at, low, high)))}
       />
     </Row>
   );
 }
 
-/** A value as text. What isn't understood stays until it is left, beside the library's complaint. */
-function Figure({ id, label, text, change, colour = false }: { id?: string; label?: string; text: string; change: (text: string) => void; colour?: boolean }): JSX.Element {
+interface FigureProps {
+  id?: string;
+  label?: string;
+  text: string;
+  refused: boolean;
+  change: (text: string) => void;
+  colour?: boolean;
+}
+
+/** A value as text. */
+function Figure({ id, label, text, refused, change, colour = false }: FigureProps): JSX.Element {
   return (
     <input
       id={id}
       type="text"
       class={colour ? "figure figure-colour" : "figure"}
       aria-label={label}
+      aria-invalid={refused}
       placeholder="–"
       spellcheck={false}
       autocomplete="off"
@@ -108,7 +149,7 @@ function Figure({ id, label, text, change, colour = false }: { id?: string; labe
 
 function ColourControl({ parameter, set }: Props<"colour">): JSX.Element {
   const id = useId();
-  const { draft, change, reset } = useDraft(parameter.name, set);
+  const { draft, refused, change, reset } = useDraft(parameter.name, set);
   const shown = parameter.value ?? parameter.default;
   const ratio = useRef<[number, number, number]>([1, 1, 1]);
   const { low, high } = parameter;
@@ -121,7 +162,7 @@ function ColourControl({ parameter, set }: Props<"colour">): JSX.Element {
       parameter={parameter}
       id={id}
       reset={parameter.given ? reset : null}
-      figure={<Figure id={id} text={draft ?? (shown === null ? "" : colourText(shown))} change={change} colour />}
+      figure={<Figure id={id} text={draft ?? (shown === null ? "" : colourText(shown))} refused={refused} change={change} colour />}
     >
       {low >= 0 ? (
         <div class="slider">
@@ -134,16 +175,12 @@ function ColourControl({ parameter, set }: Props<"colour">): JSX.Element {
               onInput={(event) => change(colourText(fromHex(event.currentTarget.value)))}
             />
           ) : null}
-          <input
-            type="range"
-            min={0}
-            max={1}
-            step={0.001}
-            value={position(largest, low, high)}
+          <Slider
+            at={position(largest, low, high)}
             aria-label={`${parameter.name}, its largest component`}
             aria-valuetext={short(largest)}
             data-unset={shown === null ? "" : undefined}
-            onInput={(event) => change(scaled(value(Number(event.currentTarget.value), low, high)))}
+            change={(at) => change(scaled(value(at, low, high)))}
           />
         </div>
       ) : null}
@@ -153,8 +190,8 @@ function ColourControl({ parameter, set }: Props<"colour">): JSX.Element {
 
 function ChoiceControl({ parameter, set }: Props<"choice">): JSX.Element {
   const id = useId();
-  const { draft, change, reset } = useDraft(parameter.name, set);
-  const shown = draft ?? parameter.value ?? parameter.default ?? "";
+  const { draft, refused, change, reset } = useDraft(parameter.name, set);
+  const shown = (refused ? null : draft) ?? parameter.value ?? parameter.default ?? "";
   return (
     <Row parameter={parameter} id={id} reset={parameter.given ? reset : null}>
       <select id={id} class="select" value={shown} onChange={(event) => (event.currentTarget.value === "" ? reset() : change(event.currentTarget.value))}>
@@ -171,13 +208,14 @@ function ChoiceControl({ parameter, set }: Props<"choice">): JSX.Element {
 
 function TextControl({ parameter, set }: Props<"path" | "name">): JSX.Element {
   const id = useId();
-  const { draft, change, reset } = useDraft(parameter.name, set);
+  const { draft, refused, change, reset } = useDraft(parameter.name, set);
   return (
     <Row parameter={parameter} id={id} reset={null}>
       <input
         id={id}
         type="text"
         class="field"
+        aria-invalid={refused}
         spellcheck={false}
         value={draft ?? parameter.value ?? ""}
         onChange={(event) => (event.currentTarget.value.trim() === "" ? reset() : change(event.currentTarget.value.trim()))}

@@ -1,6 +1,6 @@
 /** The laboratory's verdicts on one function, with the pair of directions that refutes what fails. */
 import { signal, useSignal } from "@preact/signals";
-import type { JSX } from "preact";
+import { Fragment, type JSX } from "preact";
 import { useEffect } from "preact/hooks";
 import { figure, meaning } from "../core/verdicts";
 import { engine } from "../engine/client";
@@ -153,10 +153,10 @@ function Row({ verdict }: { verdict: Verdict }): JSX.Element {
               </>
             ) : null}
             {witness?.values.map((v) => (
-              <>
+              <Fragment key={v.name}>
                 <dt>{v.name}</dt>
                 <dd>{figure(v.value)}</dd>
-              </>
+              </Fragment>
             ))}
           </dl>
         </div>
