@@ -4,8 +4,9 @@ mod fuzz;
 mod house;
 mod links;
 mod peers;
+mod web;
 
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 const HELP: &str = "\
 Usage: cargo xtask <job>
@@ -16,7 +17,8 @@ Usage: cargo xtask <job>
   house    all of them
   fuzz     run each fuzz target for --seconds N (60); needs a C++ compiler
   bench peers [scenes] [error] [start] [rays]
-           speed and error beside Mitsuba 3 and Embree 4, in one run; installs both with pip under target/peers";
+           speed and error beside Mitsuba 3 and Embree 4, in one run; installs both with pip under target/peers
+  web      the explorer as a site of static files in web/dist; needs Node 20 with npm";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
             _ => Err(format!("`{n}` seconds: expected a whole number from 1")),
         },
         ["bench", "peers", ref parts @ ..] => peers::run(parts),
+        ["web"] => web::run(),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
             Ok(())
@@ -45,5 +48,15 @@ fn main() -> ExitCode {
             eprintln!("error: {message}");
             ExitCode::FAILURE
         }
+    }
+}
+
+/// Runs a program and fails as it does.
+fn call(command: &mut Command) -> Result<(), String> {
+    let name = format!("{command:?}");
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("{name}: {status}")),
+        Err(e) => Err(format!("{name}: {e}")),
     }
 }

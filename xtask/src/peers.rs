@@ -1,5 +1,6 @@
 //! `bench peers`: speed, error, rays and memory beside other renderers', in one run.
 
+use crate::call;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -115,13 +116,4 @@ fn found(folder: &Path, prefix: &str) -> Option<PathBuf> {
         }
     }
     folders.iter().find_map(|f| found(f, prefix))
-}
-
-fn call(command: &mut Command) -> Result<(), String> {
-    let name = format!("{command:?}");
-    match command.status() {
-        Ok(status) if status.success() => Ok(()),
-        Ok(status) => Err(format!("{name}: {status}")),
-        Err(e) => Err(format!("{name}: {e}")),
-    }
 }

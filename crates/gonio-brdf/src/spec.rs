@@ -1,5 +1,6 @@
 //! [`ModelSpec`], the description of a model in words, and how it is read and built.
 
+use crate::measured::format::FORMATS;
 use crate::{
     BrdfError, Declares, Kind, Model, ModelInfo, Number, ParameterInfo, Value, model, registry,
     shader_file,
@@ -98,6 +99,33 @@ impl ModelSpec {
             spec.set_pairs(named, folder)?;
         }
         Ok(whole)
+    }
+
+    /// The model that `text` describes, or else the table of the measured file of that name.
+    ///
+    /// ```
+    /// use gonio_brdf::ModelSpec;
+    /// assert_eq!(ModelSpec::open("ggx:roughness=0.3")?.name, "torrance-sparrow");
+    /// assert_eq!(ModelSpec::open("gold-paint.binary")?.name, "table");
+    /// # Ok::<(), gonio_brdf::BrdfError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ModelSpec::parse`], where there is no file of that name and its extension is none of a measured file's. Whether the file can
+    /// be read shows when the model is built.
+    pub fn open(text: &str) -> Result<Self, BrdfError> {
+        let path = Path::new(text);
+        let extension = path.extension().and_then(|e| e.to_str());
+        let is_measured = |e: &str| FORMATS.iter().any(|f| f.extension.eq_ignore_ascii_case(e));
+        match Self::parse(text) {
+            // A name that no model has.
+            Err(BrdfError::UnknownModel { .. } | BrdfError::UnknownPreset { .. })
+                if path.exists() || extension.is_some_and(is_measured) =>
+            {
+                Self::from_pairs("table", [("file", text)])
+            }
+            described => described,
+        }
     }
 
     /// The part that is of the model called `model` (or having it as an alias), the description itself or one of those that it is

@@ -3,6 +3,7 @@
 use crate::canvas::Canvas;
 use crate::colours;
 use crate::figure::{self, Figure};
+use crate::numbers::Factors;
 use crate::scale::number;
 use crate::{Function, Options, PlotError};
 use gonio_image::tonemap::{ToneMap, encode_srgb8};
@@ -171,6 +172,42 @@ fn ball(f: &Function, theta: f64, options: &Options, side: usize) -> (Vec<u8>, u
         }
     }
     (rgb, gaps)
+}
+
+/// [`crate::numbers::ball_values`].
+pub(crate) fn values(
+    f: &Function,
+    light: Vec3<f64>,
+    tangent: f64,
+    side: usize,
+    factors: Factors,
+) -> Vec<[f64; 3]> {
+    let viewer = Vec3::new(0.0, 0.0, 1.0);
+    let mut at = Vec::new();
+    let mut pairs = Vec::new();
+    for k in 0..side * side {
+        let place = |k: usize| 2.0 * (k as f64 + 0.5) / side as f64 - 1.0;
+        let (x, y) = (place(k % side), -place(k / side));
+        let outside = 1.0 - x * x - y * y;
+        if outside > 0.0 {
+            let n = Vec3::new(x, y, outside.sqrt());
+            at.push(k);
+            pairs.push([local(n, light, tangent), local(n, viewer, tangent)]);
+        }
+    }
+    let reflected = if factors.brdf {
+        f.eval(&pairs)
+    } else {
+        vec![[1.0; 3]; pairs.len()]
+    };
+    let mut pixels = vec![[f64::NAN; 3]; side * side];
+    for ((k, [wi, _]), value) in at.into_iter().zip(pairs).zip(reflected) {
+        let light = if factors.light { PI } else { 1.0 };
+        let cosine = if factors.cosine { wi.z } else { 1.0 };
+        let factor = if wi.z > 0.0 { light * cosine } else { 0.0 };
+        pixels[k] = value.map(|x| x * factor);
+    }
+    pixels
 }
 
 /// `w` in the frame of the ball's surface at `n`: x along the circle of latitude, turned by `phi` degrees, z along the normal.

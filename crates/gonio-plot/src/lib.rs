@@ -15,6 +15,8 @@
 //! | [`pictures()`] | pictures that somebody else has rendered, side by side |
 //! | [`lines()`] | lines that somebody else has computed, on two axes |
 //!
+//! [`numbers`] has what they are drawn from, for programs that draw for themselves.
+//!
 //! The same functions and options give the same bytes of SVG on every machine and for any number of threads.
 
 mod albedo;
@@ -34,6 +36,7 @@ mod integral;
 mod lines;
 mod lobe3d;
 mod mesh;
+pub mod numbers;
 mod options;
 mod page;
 mod png;

@@ -5,7 +5,7 @@ use crate::colours;
 use crate::curves::direction;
 use crate::depth::{Corner, Depth};
 use crate::figure::{self, Figure, Place};
-use crate::mesh::Mesh;
+use crate::mesh::{Closeness, Mesh};
 use crate::scale::{Scale, ScaleKind, number};
 use crate::{Channel, Function, Options, PlotError, slice};
 use gonio_num::Vec3;
@@ -42,7 +42,7 @@ pub fn lobe3d(functions: &[Function], options: &Options) -> Result<Figure, PlotE
     };
     let mut meshes = Vec::new();
     for f in functions {
-        let mesh = Mesh::new(f, wi, options.cosine, &radius, &value);
+        let mesh = Mesh::new(f, wi, options.cosine, &radius, &value, Closeness::FINE);
         if mesh.largest(&value) == 0.0 {
             return Err(slice::nothing(f));
         }

@@ -4,6 +4,7 @@ use crate::Function;
 use crate::curves::direction;
 use gonio_num::Vec3;
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// Triangles at most.
 const MOST: usize = 250_000;
@@ -11,10 +12,29 @@ const MOST: usize = 250_000;
 const ROUNDS: usize = 22;
 /// Edges longer than this, radians, are halved whatever the surface does.
 const COARSEST: f64 = 0.14;
-/// Edges shorter than this are not halved.
-const FINEST: f64 = 2e-4;
-/// How far from the middle of an edge, in the largest radius, the surface may be.
-const FLATNESS: f64 = 2e-3;
+
+/// How closely the surface is followed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Closeness {
+    /// How far from the middle of an edge, in the largest radius, the surface may be.
+    pub flatness: f64,
+    /// Edges shorter than this, radians, are not halved.
+    pub finest: f64,
+}
+
+impl Closeness {
+    /// For a picture to keep.
+    pub const FINE: Self = Self {
+        flatness: 2e-3,
+        finest: 2e-4,
+    };
+    /// While something is being dragged: a needle's tip may be blunt, and nothing is missed that is wider than a degree.
+    pub const QUICK: Self = Self {
+        flatness: 1e-2,
+        finest: 1e-2,
+    };
+}
+
 /// Directions are at least this high above the horizon: at it a function may jump to 0.
 const HORIZON: f64 = 1e-3;
 
@@ -36,6 +56,7 @@ impl Mesh {
         cosine: bool,
         radius: &dyn Fn(f64, [f64; 3]) -> f64,
         value: &dyn Fn([f64; 3]) -> f64,
+        closeness: Closeness,
     ) -> Self {
         let mut mesh = Self {
             corners: Vec::new(),
@@ -46,7 +67,7 @@ impl Mesh {
             mesh.add_hemisphere(f, wi, cosine, *side);
         }
         let lobes = f.lobes(wi);
-        let mut tried: HashMap<(u32, u32), Edge> = HashMap::new();
+        let mut tried: Edges<Edge> = Edges::default();
         for _ in 0..ROUNDS {
             let largest = mesh.largest(value);
             mesh.try_edges(f, wi, cosine, &mut tried);
@@ -54,9 +75,9 @@ impl Mesh {
             let long = |a: Vec3<f64>, b: Vec3<f64>, m: Vec3<f64>| {
                 let length = (a - b).length();
                 let near = lobes.iter().map(|l| (*l - m).length()).fold(2.0, f64::min);
-                length > COARSEST.min(0.4 * near + 2.0 * FINEST)
+                length > COARSEST.min(0.4 * near + 2.0 * closeness.finest)
             };
-            let mut split: HashMap<(u32, u32), u32> = HashMap::new();
+            let mut split: Edges<u32> = Edges::default();
             let mut keys: Vec<(u32, u32)> = mesh.edges();
             keys.sort_unstable();
             keys.dedup();
@@ -67,7 +88,7 @@ impl Mesh {
                 let (a, b) = (mesh.corners[key.0 as usize], mesh.corners[key.1 as usize]);
                 let middle = (place(a.0, a.1) + place(b.0, b.1)) * 0.5;
                 let off = (place(edge.direction, edge.colour) - middle).length();
-                let bent = off > FLATNESS && (a.0 - b.0).length() > FINEST;
+                let bent = off > closeness.flatness && (a.0 - b.0).length() > closeness.finest;
                 if bent || long(a.0, b.0, edge.direction) {
                     let index = mesh.corners.len() as u32;
                     mesh.corners.push((edge.direction, edge.colour));
@@ -114,13 +135,7 @@ impl Mesh {
     }
 
     /// Evaluates the middles of the edges that aren't known, all at once.
-    fn try_edges(
-        &self,
-        f: &Function,
-        wi: Vec3<f64>,
-        cosine: bool,
-        tried: &mut HashMap<(u32, u32), Edge>,
-    ) {
+    fn try_edges(&self, f: &Function, wi: Vec3<f64>, cosine: bool, tried: &mut Edges<Edge>) {
         let mut new: Vec<(u32, u32)> = self.edges();
         new.retain(|key| !tried.contains_key(key));
         new.sort_unstable();
@@ -139,7 +154,7 @@ impl Mesh {
     }
 
     /// Replaces each triangle by those that its halved edges leave. As both sides of an edge halve it, there are no cracks.
-    fn split(&mut self, split: &HashMap<(u32, u32), u32>) {
+    fn split(&mut self, split: &Edges<u32>) {
         let old = std::mem::take(&mut self.triangles);
         for t in old {
             let half = |k: usize| split.get(&key(t[k], t[(k + 1) % 3])).copied();
@@ -166,6 +181,31 @@ impl Mesh {
                 }
             }
         }
+    }
+}
+
+/// By the two corners of an edge.
+type Edges<T> = HashMap<(u32, u32), T, BuildHasherDefault<EdgeHasher>>;
+
+/// Fibonacci hashing: the numbers are ours, so nobody chooses them to collide.
+#[derive(Default)]
+struct EdgeHasher(u64);
+
+impl Hasher for EdgeHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.write_u32(u32::from(*byte));
+        }
+    }
+
+    fn write_u32(&mut self, x: u32) {
+        const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+        self.0 = (self.0.rotate_left(32) ^ u64::from(x)).wrapping_mul(GOLDEN);
+    }
+
+    fn finish(&self) -> u64 {
+        // The best bits are the highest; a table takes the lowest.
+        self.0.rotate_left(26)
     }
 }
 
@@ -202,7 +242,14 @@ mod tests {
 
     fn of(f: &Function) -> Mesh {
         let radius = |largest: f64, c: [f64; 3]| c[0] / largest.max(1e-300);
-        Mesh::new(f, direction(-40.0, 0.0), false, &radius, &|c| c[0])
+        Mesh::new(
+            f,
+            direction(-40.0, 0.0),
+            false,
+            &radius,
+            &|c| c[0],
+            Closeness::FINE,
+        )
     }
 
     /// Each edge belongs to two triangles, but for those of the rim: there are no cracks.
@@ -235,6 +282,33 @@ mod tests {
         let largest = mesh.largest(&|c| c[0]);
         assert!(largest > 0.9, "{largest}");
         assert!(mesh.triangles.len() < 40_000, "{}", mesh.triangles.len());
+    }
+
+    #[test]
+    fn a_quick_mesh_is_small_and_near() {
+        for width in [1e-4, 1e-2, 0.3] {
+            let spot = direction(40.0, 0.0);
+            let f = Function::new("", move |_, wo: Vec3<f64>| {
+                let x2 = 2.0 * (1.0 - wo.dot(spot)) / (width * width);
+                [0.1 + 1.0 / ((1.0 + x2) * (1.0 + x2)); 3]
+            });
+            let radius = |largest: f64, c: [f64; 3]| c[0] / largest.max(1e-300);
+            let of = |closeness| {
+                let wi = direction(-40.0, 0.0);
+                Mesh::new(&f, wi, false, &radius, &|c| c[0], closeness)
+            };
+            let (quick, fine) = (of(Closeness::QUICK), of(Closeness::FINE));
+            assert!(
+                quick.triangles.len() < 3000
+                    && 2 * quick.triangles.len() < fine.triangles.len() + 1000,
+                "{} {}",
+                quick.triangles.len(),
+                fine.triangles.len()
+            );
+            // The tip of what is wider than the shortest edge.
+            let tip = |m: &Mesh| m.largest(&|c| c[0]);
+            assert!(width < 1e-2 || tip(&quick) > 0.9 * tip(&fine), "{width}");
+        }
     }
 
     /// A sphere of radius 1: the volume of its upper half is 2π/3.

@@ -206,6 +206,7 @@ fn received(
         albedo: [1.0; 3],
         material: 0,
         distance: 0.0,
+        foreshortens: true,
     };
     options
         .integrator

@@ -112,7 +112,10 @@ fn estimate(
 
 fn integrators(environment: EnvironmentSampling) -> [Integrator; 2] {
     [
-        Integrator::Direct(Direct { environment }),
+        Integrator::Direct(Direct {
+            environment,
+            ..Direct::default()
+        }),
         Integrator::Path(Path {
             max_bounces: 1,
             environment,

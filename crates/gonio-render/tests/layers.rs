@@ -112,6 +112,7 @@ fn shares_add_up_to_the_picture() {
         INTEGRATORS[1],
         Integrator::Direct(Direct {
             environment: product,
+            ..Direct::default()
         }),
         Integrator::Path(Path {
             environment: product,

@@ -328,6 +328,13 @@ impl Scene {
             .filter(|l| l.is_delta())
             .cloned()
             .collect();
+        self.set_lights(punctual, environment);
+    }
+
+    /// Puts other lights in the place of the present ones, but for the surfaces that shine.
+    ///
+    /// - `punctual`: point, spot and directional lights
+    pub fn set_lights(&mut self, punctual: Vec<Light>, environment: Option<Environment>) {
         self.lights = Lights::new(
             self.geometry.clone(),
             &self.materials,

@@ -15,6 +15,11 @@ pub(crate) fn on_large_stack<T: Send>(
     source: &Source,
     work: impl FnOnce() -> T + Send,
 ) -> Result<T, ShaderError> {
+    // Where there are no threads, as in a browser, one stack has to do: what it is too small for ends the program, and the page begins
+    // another one.
+    if cfg!(target_family = "wasm") {
+        return Ok(work());
+    }
     let fail = |what: &str| ShaderError::new(&source.path, what);
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new()

@@ -130,7 +130,8 @@ impl Opened {
             path: path.into(),
             source,
         };
-        if mapped {
+        // Where files can't be mapped, as in a browser, they are read.
+        if mapped && cfg!(any(unix, windows)) {
             let map = file::map(path, tensor_file::MAGIC, "a container of tables")?;
             return parse(&Input {
                 path,

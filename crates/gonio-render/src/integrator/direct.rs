@@ -20,6 +20,8 @@ use gonio_scene::{Interior, Light, Scene};
 pub struct Direct {
     /// How light from the environment is sampled.
     pub environment: EnvironmentSampling,
+    /// Leaves the cosine out of the equation: ∫ Li f dωi. That is no light that a surface could reflect; it shows what the cosine does.
+    pub without_cosine: bool,
 }
 
 impl Direct {
@@ -33,6 +35,13 @@ impl Direct {
         counts: &mut RayCounts,
         shares: &mut Shares<'_>,
     ) -> [f32; 3] {
+        let bare;
+        let vertex = if self.without_cosine {
+            bare = vertex.clone().without_cosine();
+            &bare
+        } else {
+            vertex
+        };
         let mut total = [0.0; 3];
         let guide = self.environment.guide(vertex);
         if !vertex.model.is_delta() {

@@ -32,6 +32,8 @@ pub struct Vertex<'a> {
     pub material: u32,
     /// Distance that the ray travelled to the point.
     pub distance: f32,
+    /// Whether light from an angle counts with its cosine, as it does in nature.
+    pub foreshortens: bool,
 }
 
 /// Follows `ray` to the first surface that stops it; a surface of opacity α stops it with probability α. Where it passes one that bounds a
@@ -116,7 +118,16 @@ impl<'a> Vertex<'a> {
             albedo: shading.albedo,
             material: scene.geometry.instances()[point.instance as usize].material,
             distance: point.t,
+            foreshortens: true,
             point,
+        }
+    }
+
+    /// The same, at which f stands for f·|cosθi|.
+    pub(super) fn without_cosine(self) -> Self {
+        Self {
+            foreshortens: false,
+            ..self
         }
     }
 }
@@ -127,6 +138,9 @@ impl Vertex<'_> {
         let local = self.frame.to_local(wi);
         if !self.admits(wi, local) {
             return ([0.0; 3], 0.0);
+        }
+        if !self.foreshortens {
+            return self.model.eval_and_pdf(local, self.wo);
         }
         self.model.eval_cos_and_pdf(local, self.wo)
     }
@@ -139,6 +153,9 @@ impl Vertex<'_> {
         }
         let local = sample.wi;
         sample.wi = self.frame.to_world(local);
+        if !self.foreshortens {
+            sample.weight = scaled(sample.weight, 1.0 / local.z.abs());
+        }
         self.admits(sample.wi, local).then_some(sample)
     }
 

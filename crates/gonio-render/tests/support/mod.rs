@@ -16,6 +16,7 @@ use std::ops::ControlFlow;
 pub const INTEGRATORS: [Integrator; 2] = [
     Integrator::Direct(Direct {
         environment: EnvironmentSampling::Luminance,
+        without_cosine: false,
     }),
     Integrator::Path(Path {
         max_bounces: 64,

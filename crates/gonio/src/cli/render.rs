@@ -457,6 +457,7 @@ fn options(arguments: &Arguments, scene: &Scene, range: &Range<u32>) -> RenderOp
         integrator: match arguments.integrator {
             IntegratorName::Direct => Integrator::Direct(Direct {
                 environment: environment_sampling(arguments),
+                ..Direct::default()
             }),
             IntegratorName::Path => Integrator::Path(PathTracer {
                 max_bounces: arguments.max_bounces,

@@ -1,10 +1,8 @@
 //! What is plotted: a model or a measured file.
 
-use crate::cli::destination;
 use crate::cli::failure::Failure;
 use crate::cli::terminal::warn;
-use gonio_brdf::measured::format::FORMATS;
-use gonio_brdf::{Brdf, BrdfError, Model, ModelSpec};
+use gonio_brdf::{Brdf, Model, ModelSpec};
 use gonio_plot::{Draw, Function};
 use std::path::Path;
 
@@ -23,21 +21,13 @@ impl Subject {
     /// If there is neither, or the file can't be read.
     pub fn open(text: &str) -> Result<Self, Failure> {
         let path = Path::new(text);
-        let (spec, file) = match ModelSpec::parse(text) {
-            // A name that no model has.
-            Err(BrdfError::UnknownModel { .. } | BrdfError::UnknownPreset { .. })
-                if path.exists() || is_measured(path) =>
-            {
-                (ModelSpec::from_pairs("table", [("file", text)])?, true)
-            }
-            described => (described?, path.exists()),
-        };
+        let spec = ModelSpec::open(text)?;
         let model: Model<f64, 3> = spec.build()?;
         for line in model.warnings() {
             warn(&line);
         }
         let name = match path.file_name() {
-            Some(name) if file => name.to_string_lossy().into_owned(),
+            Some(name) if path.exists() => name.to_string_lossy().into_owned(),
             _ => text.trim().into(),
         };
         Ok(Self {
@@ -65,10 +55,4 @@ impl Subject {
             None => function,
         }
     }
-}
-
-/// Whether the extension is that of a format of measurements.
-fn is_measured(path: &Path) -> bool {
-    let extension = destination::extension(path);
-    FORMATS.iter().any(|f| f.extension == extension)
 }
