@@ -98,7 +98,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
   const all = curves.value;
   useDrawn("albedo", Math.max(0, ...all.map((c) => c.since)));
   const channels = channel.value === "rgb" ? (["red", "green", "blue"] as const) : [channel.value];
-  const most = Math.max(1, ...all.flatMap((c) => c.total.flat().filter(Number.isFinite)));
+  const most = Math.max(1, ...all.flatMap((c) => channels.flatMap((one) => c.total.map((v) => channelOf(one, v)))).filter(Number.isFinite));
   const top = most > 1.002 ? Math.ceil(most * 5) / 5 : 1;
   const furnace = all.length * (STRIP + 1) + 8;
   const bottom = height - BOTTOM - furnace;

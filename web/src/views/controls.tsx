@@ -4,6 +4,7 @@ import type { Angles } from "../engine/protocol";
 import { incident, mirrored, wrap } from "../plot/directions";
 import { aligned } from "../plot/scale";
 import { type Channel, channel, cosine, exposure, type Scale, scale, type ToneMap, toneMap, visible, wi, wo } from "../state";
+import { label } from "./label";
 import { Live } from "./live";
 import { complaintsOf } from "./reading";
 import "./controls.css";
@@ -13,9 +14,9 @@ const values = new Live("evaluate", "fast", () => {
   return direction === null ? [] : visible.value.map((f) => ({ key: String(f.id), shown: f, request: { function: f.text, wi: wi.value, wo: direction } }));
 });
 
-const SCALES: Record<Scale, string> = { linear: "Linear", "cube-root": "Cube root", log: "Logarithmic" };
+const SCALES: Record<Scale, string> = { linear: "Linear", "cube-root": "Cube root", log: "Log" };
 const CHANNELS: Record<Channel, string> = { luminance: "Luminance", red: "Red", green: "Green", blue: "Blue", rgb: "RGB" };
-const TONES: Record<ToneMap, string> = { "pbr-neutral": "PBR Neutral", srgb: "sRGB, clipped", aces: "ACES" };
+const TONES: Record<ToneMap, string> = { "pbr-neutral": "Neutral", srgb: "sRGB", aces: "ACES" };
 
 export function Controls(): JSX.Element {
   return (
@@ -27,13 +28,13 @@ export function Controls(): JSX.Element {
       <Group name="ωo" words="Direction of view">
         {wo.value === null ? (
           <button type="button" class="control-button" onClick={() => (wo.value = mirrored(wi.value))}>
-            Look at a direction
+            Set to the mirror’s
           </button>
         ) : (
           <Viewing angles={wo.value} />
         )}
       </Group>
-      <Group name="Scale" words="Scale of values">
+      <Group words="How values are shown">
         <Select label="Scale" options={SCALES} value={scale.value} set={(value) => (scale.value = value)} />
         <Select label="Channel" options={CHANNELS} value={channel.value} set={(value) => (channel.value = value)} />
         <label class="control-check" title="Shows f times the cosine of the angle of reflection">
@@ -41,7 +42,7 @@ export function Controls(): JSX.Element {
           × cos θr
         </label>
       </Group>
-      <Group name="Pictures" words="How pictures are shown">
+      <Group words="How pictures are shown">
         <label class="control-range" title="Exposure, in stops">
           <span>{`${exposure.value > 0 ? "+" : exposure.value < 0 ? "−" : ""}${Math.abs(exposure.value).toFixed(1)} EV`}</span>
           <input type="range" aria-label="Exposure, stops" min={-8} max={8} step={0.1} value={exposure.value} onInput={(event) => (exposure.value = event.currentTarget.valueAsNumber)} onDblClick={() => (exposure.value = 0)} />
@@ -53,12 +54,14 @@ export function Controls(): JSX.Element {
   );
 }
 
-function Group({ name, words, children }: { name: string; words: string; children: ComponentChildren }): JSX.Element {
+function Group({ name, words, children }: { name?: string; words: string; children: ComponentChildren }): JSX.Element {
   return (
     <div class="control-group" role="group" aria-label={words}>
-      <span class="control-name" title={words} aria-hidden="true">
-        {name}
-      </span>
+      {name !== undefined && (
+        <span class="control-name" title={words} aria-hidden="true">
+          {name}
+        </span>
+      )}
       {children}
     </div>
   );
@@ -145,7 +148,7 @@ function Readout(): JSX.Element | null {
           return (
             <tr key={f.id} data-function={f.text}>
               <th scope="row" class={`series-${f.colour}`}>
-                <span class="view-dot" /> <span class="readout-name">{f.text}</span>
+                <span class="view-dot" /> <span class="readout-name" title={f.text}>{label(f.text)}</span>
               </th>
               {answer !== undefined && (
                 <>

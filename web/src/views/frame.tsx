@@ -19,12 +19,17 @@ export interface Saves {
   csv?: () => string | null;
 }
 
+/** Pixels below which nothing can be drawn that could be read. */
+const SMALLEST = 80;
+
 export interface FrameProps {
   view: ViewName;
   title: string;
   /** What it shows and how it is read, one or two sentences. */
   about: string;
   controls?: ComponentChildren;
+  /** Whether the controls need a row of their own where the view is narrow. */
+  many?: boolean;
   saves?: Saves;
   children: (size: Size) => ComponentChildren;
 }
@@ -44,7 +49,7 @@ async function save(view: ViewName, kind: keyof Saves, saves: Saves): Promise<vo
   }
 }
 
-export function Frame({ view, title, about, controls, saves = {}, children }: FrameProps): JSX.Element {
+export function Frame({ view, title, about, controls, many = false, saves = {}, children }: FrameProps): JSX.Element {
   const body = useRef<HTMLDivElement>(null);
   const [size, setSize] = useState<Size>({ width: 0, height: 0 });
   const [problem, setProblem] = useState<string | null>(null);
@@ -76,7 +81,7 @@ export function Frame({ view, title, about, controls, saves = {}, children }: Fr
         if (event.key === "Escape" && isLarge) large.value = null;
       }}
     >
-      <header class="view-head">
+      <header class={many ? "view-head many" : "view-head"}>
         <h2>{title}</h2>
         <Menu label={`What the ${title.toLowerCase()} shows`} icon={<path d="M6 6.2a2 2 0 1 1 2.9 1.8c-.6.3-.9.7-.9 1.4v.2m0 2v.4" />}>
           <p class="view-about">{about}</p>
@@ -111,7 +116,7 @@ export function Frame({ view, title, about, controls, saves = {}, children }: Fr
         </button>
       </header>
       <div class="view-body" ref={body}>
-        {size.width > 0 && size.height > 0 && children(size)}
+        {size.width >= SMALLEST && size.height >= SMALLEST && children(size)}
         {problem !== null && (
           <p class="view-complaint" role="alert">
             {problem}

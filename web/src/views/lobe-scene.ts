@@ -19,7 +19,6 @@ import {
   PerspectiveCamera,
   Raycaster,
   Scene,
-  ShaderMaterial,
   SphereGeometry,
   Vector2,
   Vector3,
@@ -69,6 +68,8 @@ export class LobeScene {
   private readonly light = new Group();
   private readonly viewer = new Group();
   private readonly ray = new Raycaster();
+  private readonly inks = new Inks();
+  private readonly skin = lobeMaterial();
   private width = 1;
   private height = 1;
   private frame = 0;
@@ -90,6 +91,8 @@ export class LobeScene {
   dispose(): void {
     cancelAnimationFrame(this.frame);
     for (const group of [this.stage, this.lobes, this.light, this.viewer]) empty(group);
+    this.inks.dispose();
+    this.skin.dispose();
     this.renderer.dispose();
   }
 
@@ -106,31 +109,30 @@ export class LobeScene {
   /** The surface with the rings of the axis. */
   setStage(axis: Axis, colours: Colours): void {
     empty(this.stage);
-    const ground = new MeshBasicMaterial({ color: colours.line, transparent: true, opacity: 0.25, side: DoubleSide, depthWrite: false });
-    this.stage.add(new Mesh(new CircleGeometry(1, 96), ground));
-    const line = new LineBasicMaterial({ color: colours.line });
+    this.stage.add(new Mesh(new CircleGeometry(1, 96), this.inks.veil(colours.line)));
+    const line = this.inks.line(colours.line);
     for (const { position, label } of axis.ticks) if (label !== "" && position > 0 && position < 1) this.stage.add(ring(position, line));
-    this.stage.add(ring(1, new LineBasicMaterial({ color: colours.strong })));
+    this.stage.add(ring(1, this.inks.line(colours.strong)));
     const spokes: number[] = [];
     for (let phi = 0; phi < 360; phi += 30) {
       const [c, s] = [Math.cos((phi * Math.PI) / 180), Math.sin((phi * Math.PI) / 180)];
       spokes.push(0, 0, 0, c, s, 0);
     }
     this.stage.add(new LineSegments(points(spokes), line));
-    this.stage.add(new Line(points([0, 0, 0, 0, 0, REACH]), new LineBasicMaterial({ color: colours.strong })));
-    this.stage.add(head([0, 0, REACH], [0, 0, 1], colours.strong, 0.7));
+    this.stage.add(new Line(points([0, 0, 0, 0, 0, REACH]), this.inks.line(colours.strong)));
+    this.stage.add(head([0, 0, REACH], [0, 0, 1], this.inks.solid(colours.strong), 0.7));
     this.invalidate();
   }
 
   setLobes(parts: Part[], axis: Axis, channel: Channel): void {
     empty(this.lobes);
+    setContours(this.skin, axis);
     for (const part of parts) {
-      const mesh = new Mesh(surface(part, axis, channel), lobeMaterial());
-      setContours(mesh.material, axis);
-      this.lobes.add(mesh);
+      this.lobes.add(new Mesh(surface(part, axis, channel), this.skin));
       for (let k = 0; k + 5 < part.spikes.length; k += 6) {
         const d = [...part.spikes.subarray(k, k + 3)] as [number, number, number];
-        this.lobes.add(shaft(d, 0, 0.94, part.colour, 0.012), head([d[0], d[1], d[2]], d, part.colour, 1));
+        const ink = this.inks.solid(part.colour);
+        this.lobes.add(shaft(d, 0, 0.94, ink, 0.012), head([d[0], d[1], d[2]], d, ink, 1));
       }
     }
     this.invalidate();
@@ -140,9 +142,10 @@ export class LobeScene {
   setLight(wi: Angles, colours: Colours): void {
     empty(this.light);
     const d = [...toVector(wi)] as [number, number, number];
-    this.light.add(shaft(d, 0.86, REACH, colours.light, 0.011));
-    this.light.add(head([0.78 * d[0], 0.78 * d[1], 0.78 * d[2]], [-d[0], -d[1], -d[2]], colours.light, 1.1));
-    const dim = new LineDashedMaterial({ color: colours.light, dashSize: 0.035, gapSize: 0.03 });
+    const ink = this.inks.solid(colours.light);
+    this.light.add(shaft(d, 0.86, REACH, ink, 0.011));
+    this.light.add(head([0.78 * d[0], 0.78 * d[1], 0.78 * d[2]], [-d[0], -d[1], -d[2]], ink, 1.1));
+    const dim = this.inks.dashed(colours.light);
     this.light.add(dashed([0, 0, 0, 0.78 * d[0], 0.78 * d[1], 0.78 * d[2]], dim));
     const m = toVector(mirrored(wi));
     this.light.add(dashed([0, 0, 0, REACH * m[0], REACH * m[1], REACH * m[2]], dim));
@@ -151,8 +154,8 @@ export class LobeScene {
       const v = toVector({ theta: Math.abs(t), phi: t < 0 ? wi.phi : wi.phi + 180 });
       arc.push(REACH * v[0], REACH * v[1], REACH * v[2]);
     }
-    this.light.add(new Line(points(arc), new LineBasicMaterial({ color: colours.line })));
-    const knob = new Mesh(new SphereGeometry(0.045, 24, 16), new MeshBasicMaterial({ color: colours.light }));
+    this.light.add(new Line(points(arc), this.inks.line(colours.line)));
+    const knob = new Mesh(new SphereGeometry(0.045, 24, 16), ink);
     knob.position.set(REACH * d[0], REACH * d[1], REACH * d[2]);
     this.light.add(knob);
     this.invalidate();
@@ -163,8 +166,8 @@ export class LobeScene {
     if (wo !== null) {
       const d = toVector(wo);
       const at: [number, number, number] = [REACH * d[0], REACH * d[1], REACH * d[2]];
-      this.viewer.add(new Line(points([0, 0, 0, ...at]), new LineBasicMaterial({ color: colours.ink })));
-      const knob = new Mesh(new SphereGeometry(0.032, 24, 16), new MeshBasicMaterial({ color: colours.ink }));
+      this.viewer.add(new Line(points([0, 0, 0, ...at]), this.inks.line(colours.ink)));
+      const knob = new Mesh(new SphereGeometry(0.032, 24, 16), this.inks.solid(colours.ink));
       knob.position.set(...at);
       this.viewer.add(knob);
     }
@@ -244,9 +247,9 @@ function dashed(numbers: number[], material: Material): Object3D {
 }
 
 /** The head of an arrow that ends at `tip`. */
-function head(tip: Triple, towards: Triple, colour: string, size: number): Object3D {
+function head(tip: Triple, towards: Triple, ink: Material, size: number): Object3D {
   const length = 0.085 * size;
-  const cone = new Mesh(new ConeGeometry(0.028 * size, length, 20), new MeshBasicMaterial({ color: colour }));
+  const cone = new Mesh(new ConeGeometry(0.028 * size, length, 20), ink);
   const d = new Vector3(...towards).normalize();
   // A cone points along +y.
   cone.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), d);
@@ -255,8 +258,8 @@ function head(tip: Triple, towards: Triple, colour: string, size: number): Objec
 }
 
 /** A rod between two distances along a direction: lines are one pixel wide on most machines. */
-function shaft(d: Triple, from: number, to: number, colour: string, radius: number): Object3D {
-  const rod = new Mesh(new ConeGeometry(radius, to - from, 12), new MeshBasicMaterial({ color: colour }));
+function shaft(d: Triple, from: number, to: number, ink: Material, radius: number): Object3D {
+  const rod = new Mesh(new ConeGeometry(radius, to - from, 12), ink);
   const positions = rod.geometry.getAttribute("position");
   // The cone's tip is as wide as its foot.
   const side = rod.geometry.getAttribute("normal");
@@ -296,8 +299,27 @@ function surface({ colour, directions, values, triangles }: Part, axis: Axis, ch
 function empty(group: Group): void {
   for (const child of [...group.children]) {
     group.remove(child);
-    const { geometry, material } = child as Mesh<BufferGeometry, ShaderMaterial>;
-    geometry.dispose();
-    material.dispose();
+    (child as Mesh).geometry.dispose();
+  }
+}
+
+/** A material for each look and colour, kept: with the last material of a kind its program goes, and to compile one takes longer than a frame. */
+class Inks {
+  private readonly kept = new Map<string, Material>();
+
+  line = (colour: string): Material => this.get(`line ${colour}`, () => new LineBasicMaterial({ color: colour }));
+  solid = (colour: string): Material => this.get(`solid ${colour}`, () => new MeshBasicMaterial({ color: colour }));
+  dashed = (colour: string): Material => this.get(`dashed ${colour}`, () => new LineDashedMaterial({ color: colour, dashSize: 0.035, gapSize: 0.03 }));
+  veil = (colour: string): Material =>
+    this.get(`veil ${colour}`, () => new MeshBasicMaterial({ color: colour, transparent: true, opacity: 0.25, side: DoubleSide, depthWrite: false }));
+
+  dispose(): void {
+    for (const material of this.kept.values()) material.dispose();
+  }
+
+  private get(key: string, make: () => Material): Material {
+    let material = this.kept.get(key);
+    if (material === undefined) this.kept.set(key, (material = make()));
+    return material;
   }
 }

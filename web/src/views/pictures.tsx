@@ -3,19 +3,20 @@ import type { ComponentChildren, JSX } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { Shown } from "../state";
 import type { Size } from "./frame";
+import { label } from "./label";
 
 /** Room for a name above a picture. */
 const NAME = 20;
 const GAP = 8;
 
-/** Columns and cell size for `count` pictures of an aspect, as large as can be. */
-export function grid(count: number, { width, height }: Size, aspect: number): { columns: number; cell: Size } {
+/** Columns and cell size for `count` pictures of an aspect, as large as can be; `foot` is what each needs below it. */
+export function grid(count: number, { width, height }: Size, aspect: number, foot = 0): { columns: number; cell: Size } {
   const name = count > 1 ? NAME : 0;
   let best = { columns: 1, cell: { width: 0, height: 0 } };
   for (let columns = 1; columns <= Math.max(1, count); columns += 1) {
     const rows = Math.ceil(count / columns);
     const w = (width - GAP * (columns + 1)) / columns;
-    const h = (height - GAP * (rows + 1)) / rows - name;
+    const h = (height - GAP * (rows + 1)) / rows - name - foot;
     const cell = { width: Math.floor(Math.min(w, h * aspect)), height: Math.floor(Math.min(w, h * aspect) / aspect) };
     if (cell.width > best.cell.width) best = { columns, cell };
   }
@@ -33,13 +34,22 @@ export interface Picture {
   words: string;
 }
 
-export function Pictures({ size, aspect, pictures, over }: { size: Size; aspect: number; pictures: Picture[]; over?: (cell: Size, picture: Picture) => ComponentChildren }): JSX.Element {
-  const { columns, cell } = grid(pictures.length, size, aspect);
+export interface PicturesProps {
+  size: Size;
+  aspect: number;
+  pictures: Picture[];
+  over?: (cell: Size, picture: Picture) => ComponentChildren;
+  /** Room below each, pixels. */
+  foot?: number;
+}
+
+export function Pictures({ size, aspect, pictures, over, foot = 0 }: PicturesProps): JSX.Element {
+  const { columns, cell } = grid(pictures.length, size, aspect, foot);
   return (
     <div class="pictures" style={{ gridTemplateColumns: `repeat(${columns}, ${cell.width}px)` }}>
       {cell.width > 8 &&
         pictures.map((picture) => (
-          <figure key={picture.shown.id} class="picture">
+          <figure key={picture.shown.id} class="picture" style={{ marginBottom: `${foot}px` }}>
             {pictures.length > 1 && <Name shown={picture.shown} width={cell.width} />}
             <div class="picture-place" style={{ width: `${cell.width}px`, height: `${cell.height}px` }}>
               <Pixels picture={picture} cell={cell} />
@@ -55,7 +65,7 @@ export function Name({ shown, width }: { shown: Shown; width: number }): JSX.Ele
   return (
     <figcaption class={`picture-name series-${shown.colour}`} style={{ maxWidth: `${width}px` }} title={shown.text}>
       <span class="view-dot" />
-      <span class="picture-text">{shown.text}</span>
+      <span class="picture-text">{label(shown.text)}</span>
     </figcaption>
   );
 }

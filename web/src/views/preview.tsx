@@ -61,6 +61,7 @@ export function Preview(): JSX.Element {
       view="preview"
       title="Preview"
       about="An object, path traced by the renderer: the more samples, the less noise. Drag to turn the panorama, or the point light, which is the direction of incidence. L, f and cos θ switch the factors of the reflection equation."
+      many
       controls={
         <>
           <select class="view-select" aria-label="Object of the preview" value={object.value} onChange={(event) => (object.value = event.currentTarget.value as typeof object.value)}>

@@ -57,6 +57,7 @@ export function Slice(): JSX.Element {
       view="slice"
       title="Slice θh × θd"
       about="f by the half angle θh (right) and the difference angle θd (up), as MERL’s materials are shown: highlights at the left, retro-reflection along the bottom, the Fresnel effect at the top left, grazing directions at the right and the top. Click to go to that pair of directions."
+      many
       controls={
         <>
           <label class="phi-d">
@@ -98,12 +99,13 @@ function Drawing({ size }: { size: Size }): JSX.Element {
     const { side } = answer.answer;
     return [{ shown: f, width: side, height: side, paint: painted(answer, scale), words: `Slice of ${f.text} at φd = ${phiD.value}°` }];
   });
-  const inner: Size = { width: size.width - LEFT - BAR, height: size.height - BELOW };
-  const barHeight = Math.max(40, inner.height - 30);
+  const below = pictures.length > 1 ? 0 : BELOW;
+  const inner: Size = { width: size.width - LEFT - BAR, height: size.height - below };
+  const barHeight = Math.max(40, size.height - 64);
   return (
     <>
-      <div class="slice-place" style={{ left: `${LEFT - 6}px`, right: `${BAR}px`, bottom: `${BELOW - 6}px` }}>
-        {pictures.length > 0 && <Pictures size={inner} aspect={1} pictures={pictures} over={(cell) => <Axes cell={cell} single={pictures.length === 1} />} />}
+      <div class="slice-place" style={{ left: `${LEFT - 6}px`, right: `${BAR}px`, bottom: `${below === 0 ? 0 : below - 6}px` }}>
+        {pictures.length > 0 && <Pictures size={inner} aspect={1} pictures={pictures} foot={pictures.length > 1 ? 20 : 0} over={(cell) => <Axes cell={cell} single={pictures.length === 1} />} />}
       </div>
       {pictures.length > 0 && (
         <div class="bar-place" style={{ top: "22px" }}>
