@@ -9,6 +9,7 @@ mod diff;
 mod documents;
 mod env;
 mod environment;
+mod explore;
 mod failure;
 mod farm;
 mod info;
@@ -37,7 +38,8 @@ use std::process::ExitCode;
     after_help = "Examples:\n  \
         gonio render                                    the preview: gonio.png and gonio.exr\n  \
         gonio brdf check all                            is every reflection function physical?\n  \
-        gonio measure irradiance --env uniform:1        π W m⁻²\n\n\
+        gonio measure irradiance --env uniform:1        π W m⁻²\n  \
+        gonio explore                                   reflection at your fingertips, in the browser\n\n\
         Exit codes: 0 done, 1 a verification failed, 2 usage, 3 input, 4 interrupted.",
     propagate_version = true,
     disable_help_subcommand = true
@@ -71,6 +73,8 @@ enum Command {
     Measure(measure::Command),
     /// Compare two images: RMSE, relative MSE, PSNR, FLIP
     Diff(diff::Arguments),
+    /// Explore reflection functions in the browser
+    Explore(explore::Arguments),
 }
 
 /// Runs the command on the process's arguments.
@@ -101,6 +105,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Env(command) => env::run(command),
         Command::Measure(command) => measure::run(command),
         Command::Diff(arguments) => diff::run(&arguments),
+        Command::Explore(arguments) => explore::run(&arguments),
     }
 }
 

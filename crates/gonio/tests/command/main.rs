@@ -12,6 +12,7 @@ mod diff;
 mod divide;
 mod environment;
 mod exec;
+mod explore;
 mod export;
 mod farm;
 mod interrupt;
