@@ -17,8 +17,10 @@ export type Kind = "measured" | "shader" | "panorama";
 export interface Held {
   name: string;
   kind: Kind;
-  /** Of a shader. */
+  /** Of a shader, as it is in the editor. */
   source: string | null;
+  /** What is wrong with the source; the views keep the last one that worked. */
+  problem: Complaint | null;
 }
 
 /** What the folder holds beside what comes along with the page. */
@@ -95,25 +97,26 @@ async function takeOne(file: File): Promise<void> {
   try {
     if (kind === "panorama") {
       await engine.ask("panorama", { light: `files/${name}`, width: 16, height: 8 }, { pool: "slow" });
-      hold({ name, kind, source: null });
+      hold({ name, kind, source: null, problem: null });
       light.value = `files/${name}`;
     } else {
       const reply = await engine.ask("describe", { function: `files/${name}` }, { pool: "fast" });
       // `.brdf` is the extension of shaders and of a measured format; the library tells them apart by what they hold.
       const shader = kind === "shader" && reply?.answer.model !== "table";
-      hold({ name, kind: shader ? "shader" : "measured", source: shader ? new TextDecoder().decode(bytes) : null });
+      hold({ name, kind: shader ? "shader" : "measured", source: shader ? new TextDecoder().decode(bytes) : null, problem: null });
       if (wanted === undefined) show(name);
     }
   } catch (error) {
     // A shader with a mistake is still worth an editor: its text is kept, and the error stands at its line.
-    if (kind === "shader" && complaintOf(error).place !== null) {
-      hold({ name, kind, source: new TextDecoder().decode(bytes) });
+    const problem = complaintOf(error);
+    if (kind === "shader" && problem.place !== null) {
+      hold({ name, kind, source: new TextDecoder().decode(bytes), problem });
       if (show(name)) {
         tab.value = "source";
         return;
       }
     }
-    complain(renamed(complaintOf(error), name, file.name), file.name);
+    complain(renamed(problem, name, file.name), file.name);
     return;
   }
   if (wanted !== undefined) {
@@ -142,25 +145,27 @@ export function createShader(name: string, source: string): void {
 
 export function putShader(name: string, source: string): void {
   engine.putFile(name, new TextEncoder().encode(source));
-  hold({ name, kind: "shader", source });
+  hold({ name, kind: "shader", source, problem: null });
 }
 
 /**
- * Tries a shader's new text under another name first, so that the views keep the last one that works; null when it took the old one's place, else the
- * library's error. Undefined if a newer text came before.
+ * Tries a shader's new text under another name first, so that the views keep the last one that works; if the library understands it, it takes the old one's place, else
+ * its error is the file's `problem`.
  */
-export async function editShader(name: string, source: string): Promise<Complaint | null | undefined> {
+export async function editShader(name: string, source: string): Promise<void> {
+  const change = (to: Partial<Held>): void => void (held.value = held.value.map((file) => (file.name === name ? { ...file, ...to } : file)));
   const draft = `draft-${name}`;
-  held.value = held.value.map((file) => (file.name === name ? { ...file, source } : file));
+  change({ source });
   engine.putFile(draft, new TextEncoder().encode(source));
   try {
     const reply = await engine.ask("describe", { function: `files/${draft}` }, { pool: "fast", key: `draft:${name}` });
-    if (reply === null) return undefined;
+    if (reply === null) return;
   } catch (error) {
-    return renamed(complaintOf(error), draft, name);
+    if (sourceOf(name) === source) change({ problem: renamed(complaintOf(error), draft, name) });
+    return;
   }
-  if (sourceOf(name) !== source) return undefined;
+  if (sourceOf(name) !== source) return;
+  change({ problem: null });
   engine.putFile(name, new TextEncoder().encode(source));
   await refresh(name);
-  return null;
 }

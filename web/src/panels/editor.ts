@@ -75,13 +75,11 @@ export interface Editor {
   /** Shows the library's error at its place, or none. */
   mark(complaint: Complaint | null): void;
   text(): string;
-  replace(text: string): void;
   destroy(): void;
 }
 
 export function createEditor(host: HTMLElement, text: string, label: string, changed: (text: string) => void): Editor {
   const root = host.shadowRoot ?? host.attachShadow({ mode: "open" });
-  let replacing = false;
   const view = new EditorView({
     parent: root,
     root,
@@ -102,7 +100,7 @@ export function createEditor(host: HTMLElement, text: string, label: string, cha
         keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
         EditorView.contentAttributes.of({ "aria-label": label, tabindex: "0" }),
         EditorView.updateListener.of((update) => {
-          if (update.docChanged && !replacing) changed(update.state.doc.toString());
+          if (update.docChanged) changed(update.state.doc.toString());
         }),
       ],
     }),
@@ -119,11 +117,6 @@ export function createEditor(host: HTMLElement, text: string, label: string, cha
       view.dispatch(setDiagnostics(view.state, found));
     },
     text: () => view.state.doc.toString(),
-    replace(next) {
-      replacing = true;
-      view.dispatch({ changes: { from: 0, to: view.state.doc.length, insert: next } });
-      replacing = false;
-    },
     destroy: () => view.destroy(),
   };
 }

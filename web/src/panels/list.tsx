@@ -2,8 +2,8 @@
 import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
 import { aliases } from "../catalogue";
-import { shortName } from "../core/text";
-import { missing, take } from "../files";
+import { filesIn, shortName } from "../core/text";
+import { held, missing, take } from "../files";
 import { add, duplicate, MOST, remove, setVisible } from "../functions";
 import { functions, selected, type Shown } from "../state";
 import { picker } from "./picker";
@@ -13,6 +13,7 @@ import { Icon, IconButton } from "./ui";
 function Row({ shown }: { shown: Shown }): JSX.Element {
   const [name, rest] = shortName(shown.text, aliases.value);
   const isSelected = selected.value === shown.id;
+  const isWrong = shown.complaint !== null || held.value.some((file) => file.problem !== null && filesIn(shown.text).includes(file.name));
   return (
     <li class={`function ${isSelected ? "function-selected" : ""} ${shown.visible ? "" : "function-hidden"}`} data-colour={shown.colour}>
       <button
@@ -28,7 +29,7 @@ function Row({ shown }: { shown: Shown }): JSX.Element {
       <button type="button" class="function-name" aria-current={isSelected ? "true" : undefined} title={shown.text} onClick={() => (selected.value = shown.id)}>
         <span class="function-model">{name}</span>
         <span class="function-rest">{rest}</span>
-        {shown.complaint !== null ? <span class="function-flag">error</span> : null}
+        {isWrong ? <span class="function-flag">error</span> : null}
       </button>
       <IconButton icon="copy" label={`Duplicate ${name}`} disabled={functions.value.length >= MOST} onClick={() => duplicate(shown.id)} />
       <IconButton icon="remove" label={`Remove ${name}`} onClick={() => remove(shown.id)} />

@@ -60,7 +60,7 @@ function Selected({ shown }: { shown: Shown }): JSX.Element {
       </div>
       <div class="tab-panel" id="tab-panel" role="tabpanel" aria-labelledby={`tab-${open}`}>
         {open === "parameters" ? <ParametersTab shown={shown} /> : null}
-        {open === "source" && shader !== undefined ? <ShaderEditor key={shader.name} name={shader.name} complaint={shown.complaint} /> : null}
+        {open === "source" && shader !== undefined ? <ShaderEditor key={shader.name} file={shader} complaint={shown.complaint} /> : null}
         {open === "verdicts" ? <Verdicts shown={shown} /> : null}
       </div>
     </section>

@@ -3,37 +3,32 @@ import { useSignal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import type { Complaint } from "../engine/protocol";
-import { editShader, sourceOf } from "../files";
+import { editShader, type Held, sourceOf } from "../files";
 import type { Editor } from "./editor";
 import { Icon, Problem, save } from "./ui";
 
-export function ShaderEditor({ name, complaint }: { name: string; complaint: Complaint | null }): JSX.Element {
+export function ShaderEditor({ file, complaint }: { file: Held; complaint: Complaint | null }): JSX.Element {
+  const { name } = file;
   const host = useRef<HTMLDivElement>(null);
   const editor = useRef<Editor | null>(null);
-  /** Of the text as it is in the editor; undefined before it was edited: then the function's own complaint is about this text. */
-  const edited = useSignal<Complaint | null | undefined>(undefined);
-  const problem = edited.value === undefined ? complaint : edited.value;
   const loading = useSignal(true);
-  const shownProblem = useRef(problem);
-  shownProblem.current = problem;
+  // A shader that never worked has no draft: then the function's own complaint is about this text.
+  const problem = file.problem ?? complaint;
+  const latest = useRef(problem);
+  latest.current = problem;
   useEffect(() => editor.current?.mark(problem), [problem]);
 
   useEffect(() => {
     let gone = false;
     let timer = 0;
-    const tried = async (text: string): Promise<void> => {
-      const found = await editShader(name, text);
-      if (gone || found === undefined) return;
-      edited.value = found;
-    };
     void import("./editor").then(({ createEditor }) => {
       if (gone || host.current === null) return;
       loading.value = false;
       editor.current = createEditor(host.current, sourceOf(name) ?? "", `Source of ${name}`, (text) => {
         clearTimeout(timer);
-        timer = setTimeout(() => void tried(text), 60);
+        timer = setTimeout(() => void editShader(name, text), 60);
       });
-      editor.current.mark(shownProblem.current);
+      editor.current.mark(latest.current);
     });
     return () => {
       gone = true;

@@ -94,6 +94,7 @@ export async function copy(text: string, what: string): Promise<void> {
 export function Copyable({ label, text }: { label: string; text: string }): JSX.Element {
   const rows = text.trimEnd().split("\n").reduce((sum, line) => sum + Math.max(1, Math.ceil(line.length / 84)), 0);
   const field = useRef<HTMLTextAreaElement>(null);
+  const id = useId();
   const copyIt = (): void => {
     copy(text, label).catch(() => {
       // Without the permission the text is at least selected.
@@ -102,16 +103,18 @@ export function Copyable({ label, text }: { label: string; text: string }): JSX.
     });
   };
   return (
-    <label class="copyable">
-      <span class="copyable-label">{label}</span>
-      <span class="copyable-row">
-        <textarea ref={field} class="code" readOnly rows={Math.min(12, rows)} value={text.trimEnd()} spellcheck={false} />
+    <div class="copyable">
+      <label class="copyable-label" for={id}>
+        {label}
+      </label>
+      <div class="copyable-row">
+        <textarea ref={field} id={id} class="code" readOnly rows={Math.min(12, rows)} value={text.trimEnd()} spellcheck={false} />
         <button type="button" class="button" onClick={copyIt} aria-label={`Copy: ${label}`}>
           <Icon name="copy" />
           Copy
         </button>
-      </span>
-    </label>
+      </div>
+    </div>
   );
 }
 
@@ -147,7 +150,7 @@ export function Dialog({ title, onClose, children, wide = false }: { title: stri
         event.preventDefault();
         onClose();
       }}
-      onClick={(event) => {
+      onPointerDown={(event) => {
         if (event.target === dialog.current) onClose();
       }}
     >

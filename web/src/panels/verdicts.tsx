@@ -38,13 +38,16 @@ function degrees(a: Angles): string {
   return `${one(a.theta)}, ${one(a.phi)}`;
 }
 
-/** Takes every view to the witness. The views show light from above only. */
+/** Takes every view to the witness. */
 function goTo(verdict: Verdict): void {
   const witness = verdict.witness!;
-  if (witness.wi !== null) wi.value = { theta: Math.min(witness.wi.theta_deg, 89.5), phi: witness.wi.phi_deg };
-  else wi.value = { theta: Math.min(witness.wo.theta_deg, 89.5), phi: witness.wo.phi_deg };
+  // A property of one direction has it as the direction of incidence in the views: the albedo for this light.
+  const light = angles(witness.wi ?? witness.wo);
+  wi.value = { theta: Math.min(light.theta, 89.5), phi: light.phi };
   wo.value = witness.wi === null ? null : angles(witness.wo);
-  say(`Every view shows the witness of ${meaning(verdict.property).name.toLowerCase()}`);
+  const name = meaning(verdict.property).name.toLowerCase();
+  if (light.theta > 90) say(`The witness of ${name} has its light below the surface, at θ ${Math.round(light.theta)}°; the views show light from above, here at 89.5°`);
+  else say(`Every view shows the witness of ${name}`);
 }
 
 export function Verdicts({ shown }: { shown: Shown }): JSX.Element {
