@@ -114,7 +114,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
           }}
         />
       </svg>
-      <Reading place="corner" />
+      <Reading place="inside" />
       {beyond !== null && <p class="view-note">up to {number(beyond)} near the horizon: cut off</p>}
       <Complaints of={complaintsOf(curves)} />
     </>

@@ -28,7 +28,7 @@ export function Controls(): JSX.Element {
       <Group name="ωo" words="Direction of view">
         {wo.value === null ? (
           <button type="button" class="control-button" onClick={() => (wo.value = mirrored(wi.value))}>
-            Set to the mirror’s
+            Mirror’s direction
           </button>
         ) : (
           <Viewing angles={wo.value} />

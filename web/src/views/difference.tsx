@@ -74,7 +74,12 @@ const fields = computed<{ sphere: Field | null; slice: Field | null; end: number
     if (f === null) continue;
     f.paint = (out) => {
       for (let k = 0; k < f.values.length; k += 1) {
-        if (!Number.isNaN(f.values[k]!)) out.set([...ofDifference(f.values[k]! / end), 255], 4 * k);
+        if (Number.isNaN(f.values[k]!)) continue;
+        const [red, green, blue] = ofDifference(f.values[k]! / end);
+        out[4 * k] = red;
+        out[4 * k + 1] = green;
+        out[4 * k + 2] = blue;
+        out[4 * k + 3] = 255;
       }
     };
   }
@@ -265,10 +270,10 @@ function Edge({ side, slice }: { side: number; slice: Field }): JSX.Element {
       }}
     >
       <rect class="rim" x={0.5} y={0.5} width={side - 1} height={side - 1} />
-      <text class="axis-name" x={side - 4} y={side - 6} text-anchor="end">
+      <text class="over-text" x={side - 4} y={side - 6} text-anchor="end">
         θh →
       </text>
-      <text class="axis-name" x={4} y={12}>
+      <text class="over-text" x={4} y={13}>
         θd ↑
       </text>
     </svg>

@@ -20,6 +20,7 @@ const VERTEX = /* glsl */ `
 
 const FRAGMENT = /* glsl */ `
   uniform float contours[${MOST}];
+  uniform float opacity;
   varying vec3 vNormal;
   varying vec3 vAt;
   varying vec3 vOwn;
@@ -33,7 +34,7 @@ const FRAGMENT = /* glsl */ `
     float line = 0.0;
     for (int k = 0; k < ${MOST}; k++) line = max(line, 1.0 - smoothstep(0.4, 1.3, abs(r - contours[k]) / width));
     vec3 lit = min(vOwn * shade + 0.10 * pow(key, 12.0), vec3(1.0));
-    gl_FragColor = vec4(mix(lit, lit * 0.62, line), 1.0);
+    gl_FragColor = vec4(mix(lit, lit * 0.62, line), mix(opacity, 1.0, 0.5 * line));
   }
 `;
 
@@ -41,9 +42,15 @@ export function lobeMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
-    uniforms: { contours: { value: new Array<number>(MOST).fill(-1) } },
+    uniforms: { contours: { value: new Array<number>(MOST).fill(-1) }, opacity: { value: 1 } },
+    transparent: true,
     side: DoubleSide,
   });
+}
+
+/** Lobes that others are inside of can be seen through. */
+export function setOpacity(material: ShaderMaterial, opacity: number): void {
+  material.uniforms["opacity"]!.value = opacity;
 }
 
 /** The values of an axis that a lobe has lines at; −1 stands for none. */

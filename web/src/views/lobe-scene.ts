@@ -5,6 +5,7 @@ import {
   CircleGeometry,
   Color,
   ConeGeometry,
+  CylinderGeometry,
   DoubleSide,
   Group,
   Line,
@@ -30,7 +31,7 @@ import { mirrored, toAngles, toVector } from "../plot/directions";
 import type { Axis } from "../plot/scale";
 import { srgb8 } from "../plot/tone";
 import type { Channel } from "../state";
-import { lobeMaterial, setContours } from "./lobe-material";
+import { lobeMaterial, setContours, setOpacity } from "./lobe-material";
 
 /** How far out the light and the viewer are, where the rim of the axis is at 1. */
 export const REACH = 1.22;
@@ -127,8 +128,13 @@ export class LobeScene {
   setLobes(parts: Part[], axis: Axis, channel: Channel): void {
     empty(this.lobes);
     setContours(this.skin, axis);
+    setOpacity(this.skin, parts.length > 1 ? 0.62 : 1);
     for (const part of parts) {
-      this.lobes.add(new Mesh(surface(part, axis, channel), this.skin));
+      const mesh = new Mesh(surface(part, axis, channel), this.skin);
+      mesh.geometry.computeBoundingSphere();
+      // The larger ones after those that may be inside of them.
+      mesh.renderOrder = mesh.geometry.boundingSphere?.radius ?? 0;
+      this.lobes.add(mesh);
       for (let k = 0; k + 5 < part.spikes.length; k += 6) {
         const d = [...part.spikes.subarray(k, k + 3)] as [number, number, number];
         const ink = this.inks.solid(part.colour);
@@ -259,15 +265,7 @@ function head(tip: Triple, towards: Triple, ink: Material, size: number): Object
 
 /** A rod between two distances along a direction: lines are one pixel wide on most machines. */
 function shaft(d: Triple, from: number, to: number, ink: Material, radius: number): Object3D {
-  const rod = new Mesh(new ConeGeometry(radius, to - from, 12), ink);
-  const positions = rod.geometry.getAttribute("position");
-  // The cone's tip is as wide as its foot.
-  const side = rod.geometry.getAttribute("normal");
-  for (let k = 0; k < positions.count; k += 1) {
-    if (positions.getY(k) <= 0) continue;
-    const length = Math.hypot(side.getX(k), side.getZ(k)) || 1;
-    positions.setXYZ(k, (radius * side.getX(k)) / length, positions.getY(k), (radius * side.getZ(k)) / length);
-  }
+  const rod = new Mesh(new CylinderGeometry(radius, radius, to - from, 12), ink);
   rod.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), new Vector3(...d));
   rod.position.set(...d).multiplyScalar((from + to) / 2);
   return rod;

@@ -38,7 +38,8 @@ export interface PicturesProps {
   size: Size;
   aspect: number;
   pictures: Picture[];
-  over?: (cell: Size, picture: Picture) => ComponentChildren;
+  /** What is drawn over a picture; `left` says whether it is the first of a row. */
+  over?: (cell: Size, left: boolean) => ComponentChildren;
   /** Room below each, pixels. */
   foot?: number;
 }
@@ -48,12 +49,12 @@ export function Pictures({ size, aspect, pictures, over, foot = 0 }: PicturesPro
   return (
     <div class="pictures" style={{ gridTemplateColumns: `repeat(${columns}, ${cell.width}px)` }}>
       {cell.width > 8 &&
-        pictures.map((picture) => (
+        pictures.map((picture, k) => (
           <figure key={picture.shown.id} class="picture" style={{ marginBottom: `${foot}px` }}>
             {pictures.length > 1 && <Name shown={picture.shown} width={cell.width} />}
             <div class="picture-place" style={{ width: `${cell.width}px`, height: `${cell.height}px` }}>
               <Pixels picture={picture} cell={cell} />
-              {over?.(cell, picture)}
+              {over?.(cell, k % columns === 0)}
             </div>
           </figure>
         ))}

@@ -111,7 +111,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
         />
       </svg>
       <Reading place="corner" />
-      <p class="view-note">
+      <p class="view-note top">
         {quantity}
         {scale.value !== "linear" && `, radius ${scale.value === "log" ? "logarithmic" : "cube root"}`}
         {beyond !== null && `; up to ${number(beyond)} near the horizon`}

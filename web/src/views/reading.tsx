@@ -7,7 +7,7 @@ import type { Live } from "./live";
 import { at, lines, looked } from "./plane";
 
 /** Each curve's value at the angle that the pointer is at. */
-export function Reading({ place }: { place: "corner" }): JSX.Element | null {
+export function Reading({ place }: { place: "corner" | "inside" }): JSX.Element | null {
   const angle = looked.value;
   if (angle === null || lines.value.length === 0) return null;
   return (

@@ -105,7 +105,7 @@ function Drawing({ size }: { size: Size }): JSX.Element {
   return (
     <>
       <div class="slice-place" style={{ left: `${LEFT - 6}px`, right: `${BAR}px`, bottom: `${below === 0 ? 0 : below - 6}px` }}>
-        {pictures.length > 0 && <Pictures size={inner} aspect={1} pictures={pictures} foot={pictures.length > 1 ? 20 : 0} over={(cell) => <Axes cell={cell} single={pictures.length === 1} />} />}
+        {pictures.length > 0 && <Pictures size={inner} aspect={1} pictures={pictures} foot={pictures.length > 1 ? 30 : 0} over={(cell, left) => <Axes cell={cell} single={pictures.length === 1} left={left} />} />}
       </div>
       {pictures.length > 0 && (
         <div class="bar-place" style={{ top: "22px" }}>
@@ -140,9 +140,10 @@ function painted(answer: Answer<"slice">, scale: Axis): (out: Uint8ClampedArray)
 }
 
 /** Angles along the edges, and where the present pair of directions is. */
-function Axes({ cell, single }: { cell: Size; single: boolean }): JSX.Element {
+function Axes({ cell, single, left }: { cell: Size; single: boolean; left: boolean }): JSX.Element {
   const side = cell.width;
   const at = (degrees: number): number => (clamp(degrees, 0, STEEPEST) / STEEPEST) * side;
+  const wide = single || side > 200;
   const steps = side > 170 ? [0, 15, 30, 45, 60, 75, 90] : [0, 30, 60, 90];
   const go = (x: number, y: number): void => {
     const pair = fromHalfDifference(clamp((x / side) * STEEPEST, 0, STEEPEST), clamp((1 - y / side) * STEEPEST, 0, STEEPEST), phiD.value, wi.value.phi - phiD.value);
@@ -170,21 +171,19 @@ function Axes({ cell, single }: { cell: Size; single: boolean }): JSX.Element {
         <g key={t}>
           <line class="rim" x1={at(t)} x2={at(t)} y1={side} y2={side + 4} />
           <line class="rim" x1={-4} x2={0} y1={side - at(t)} y2={side - at(t)} />
-          {single && (
-            <>
-              <text class="tick" x={at(t)} y={side + 12}>
-                {t}°
-              </text>
-              {t > 0 && (
-                <text class="tick end" x={-7} y={side - at(t)}>
-                  {t}°
-                </text>
-              )}
-            </>
+          {wide && (
+            <text class="tick" x={at(t)} y={side + 12}>
+              {t}°
+            </text>
+          )}
+          {left && t > 0 && (
+            <text class="tick end" x={-7} y={side - at(t)}>
+              {t}°
+            </text>
           )}
         </g>
       ))}
-      <text class="axis-name" x={side / 2} y={side + (single ? 25 : 15)} text-anchor="middle">
+      <text class="axis-name" x={side / 2} y={side + (wide ? 25 : 15)} text-anchor="middle">
         half angle θh
       </text>
       {single && (
