@@ -10,7 +10,7 @@ import { type Axis, axis, degrees, number } from "../plot/scale";
 import { channel, cosine, scale, visible, wi, wo } from "../state";
 import { Complaints, Frame, type Size } from "./frame";
 import { follow, setWi, setWo } from "./handle";
-import { Live, seen } from "./live";
+import { Live, seen, settled } from "./live";
 import type { Colours, LobeScene, Part } from "./lobe-scene";
 import { complaintsOf } from "./reading";
 import { colour, theme } from "./theme";
@@ -21,7 +21,7 @@ const lobes = new Live("lobe", "fast", () =>
     ? visible.value.map((f) => ({
         key: String(f.id),
         shown: f,
-        request: { function: f.text, wi: wi.value, scale: scale.value, cosine: cosine.value },
+        request: { function: f.text, wi: wi.value, scale: scale.value, cosine: cosine.value, quick: !settled.value },
       }))
     : null,
 );
