@@ -71,11 +71,18 @@ fn upward_edges(metadata: &Value) -> Result<Vec<String>, String> {
     Ok(upward)
 }
 
-/// Fails if a Rust source file of the repository is longer than [`LONGEST_FILE`] lines.
+/// Fails if a source file of the repository, in Rust or TypeScript, is longer than [`LONGEST_FILE`] lines.
 pub fn files() -> Result<(), String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut sources = Vec::new();
-    for folder in ["crates", "xtask", "examples", "fuzz"] {
+    for folder in [
+        "crates",
+        "xtask",
+        "examples",
+        "fuzz",
+        "web/src",
+        "web/tests",
+    ] {
         collect(&root.join(folder), &mut sources).map_err(|e| format!("{folder}: {e}"))?;
     }
     let mut long = Vec::new();
@@ -110,7 +117,10 @@ fn collect(folder: &Path, into: &mut Vec<PathBuf>) -> std::io::Result<()> {
             if path.file_name().is_some_and(|name| name != "target") {
                 collect(&path, into)?;
             }
-        } else if path.extension().is_some_and(|e| e == "rs") {
+        } else if path
+            .extension()
+            .is_some_and(|e| ["rs", "ts", "tsx"].iter().any(|known| e == *known))
+        {
             into.push(path);
         }
     }

@@ -49,7 +49,8 @@ fn collect(folder: &Path, into: &mut Vec<PathBuf>) -> std::io::Result<()> {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         if path.is_dir() {
-            if !name.starts_with('.') && name != "target" && !path.join("book.toml").exists() {
+            let made = ["target", "node_modules", "dist"].contains(&&*name);
+            if !name.starts_with('.') && !made && !path.join("book.toml").exists() {
                 collect(&path, into)?;
             } else if path.join("book.toml").exists() {
                 // Beside its source a book has what was made of it.
