@@ -1,5 +1,5 @@
 import { defineConfig } from "vite";
-import { collect, licenses } from "./licenses";
+import { collect, licenses } from "./licenses.ts";
 
 export default defineConfig({
   // Relative addresses: the site works in any folder of any server.

@@ -9,6 +9,8 @@ export const MOST = 8;
 let nextId = 1;
 /** Parameters that were asked for and not yet answered, by function: a newer request holds the older ones' changes too. */
 const pending = new Map<number, Record<string, string | null>>();
+/** Texts that were asked for and not yet answered, by function: parameters are set in them, not in what they replace. */
+const texts = new Map<number, string>();
 
 export function find(id: number): Shown | undefined {
   return functions.value.find((f) => f.id === id);
@@ -33,19 +35,19 @@ export function add(text: string, shown: { colour?: number; visible?: boolean } 
   if (functions.value.length >= MOST) return null;
   const id = nextId++;
   const colour = shown.colour ?? freeColour();
-  functions.value = [...functions.value, { id, text, description: null, complaint: null, colour, visible: shown.visible ?? true, revision: 0 }];
+  functions.value = [...functions.value, { id, text, preset: null, description: null, complaint: null, colour, visible: shown.visible ?? true, revision: 0 }];
   selected.value = id;
   void setText(id, text);
   return id;
 }
 
-async function settle(id: number, asked: Promise<Reply<"describe"> | Reply<"set"> | null>): Promise<boolean> {
+async function settle(id: number, asked: Promise<Reply<"describe"> | Reply<"set"> | null>, preset: string | null): Promise<boolean> {
   const changed = performance.now();
   try {
     const reply = await asked;
     if (reply === null) return false;
     const description: Description = reply.answer;
-    update(id, { text: description.text, description, complaint: null, changed });
+    update(id, { text: description.text, preset, description, complaint: null, changed });
     return true;
   } catch (error) {
     update(id, { complaint: complaintOf(error) });
@@ -54,9 +56,13 @@ async function settle(id: number, asked: Promise<Reply<"describe"> | Reply<"set"
 }
 
 /** Describes the function by this text; if the library can't, the complaint is shown and the views keep what they have. */
-export function setText(id: number, text: string): Promise<boolean> {
+export async function setText(id: number, text: string): Promise<boolean> {
   pending.delete(id);
-  return settle(id, engine.ask("describe", { function: text }, { pool: "fast", key: `function:${id}` }));
+  texts.set(id, text);
+  const preset = /^[\w-]+@[\w-]+$/.test(text) ? text : null;
+  const done = await settle(id, engine.ask("describe", { function: text }, { pool: "fast", key: `function:${id}` }), preset);
+  if (texts.get(id) === text) texts.delete(id);
+  return done;
 }
 
 /** Sets parameters, or takes them away (null). */
@@ -65,7 +71,7 @@ export async function setValues(id: number, values: Record<string, string | null
   if (shown === undefined) return false;
   const all = { ...pending.get(id), ...values };
   pending.set(id, all);
-  const done = await settle(id, engine.ask("set", { function: shown.text, values: all }, { pool: "fast", key: `function:${id}` }));
+  const done = await settle(id, engine.ask("set", { function: texts.get(id) ?? shown.text, values: all }, { pool: "fast", key: `function:${id}` }), null);
   if (pending.get(id) === all) pending.delete(id);
   return done;
 }
@@ -82,7 +88,7 @@ export async function refresh(file: string): Promise<void> {
 
 export function duplicate(id: number): void {
   const shown = find(id);
-  if (shown !== undefined) add(shown.text);
+  if (shown !== undefined) add(shown.preset ?? shown.text);
 }
 
 export function remove(id: number): void {

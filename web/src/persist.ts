@@ -25,7 +25,7 @@ function snapshot(): Linked {
   }
   const pair = state.difference.value;
   return {
-    functions: functions.map(({ text, colour, visible }) => ({ text, colour, visible })),
+    functions: functions.map(({ text, preset, colour, visible }) => ({ text: preset ?? text, colour, visible })),
     selected: Math.max(0, index(state.selected.value)),
     wi: state.wi.value,
     wo: state.wo.value,

@@ -11,6 +11,8 @@ export interface Shown {
   id: number;
   /** The last description that the library understood: what the views draw. */
   text: string;
+  /** The published parameters that it still is, as `ward@gold-paint`; its `text` has them written out. */
+  preset: string | null;
   /** What it means; null until the library has answered. */
   description: Description | null;
   /** What was wrong with what was asked for last; the views keep what they have. */

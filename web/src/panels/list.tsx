@@ -11,7 +11,7 @@ import { newShader } from "./shader-new";
 import { Icon, IconButton } from "./ui";
 
 function Row({ shown }: { shown: Shown }): JSX.Element {
-  const [name, rest] = shortName(shown.text, aliases.value);
+  const [name, rest] = shortName(shown.preset ?? shown.text, aliases.value);
   const isSelected = selected.value === shown.id;
   const isWrong = shown.complaint !== null || held.value.some((file) => file.problem !== null && filesIn(shown.text).includes(file.name));
   return (
@@ -91,7 +91,7 @@ export function Legend(): JSX.Element {
   return (
     <ul class="legend" aria-label="Functions">
       {functions.value.map((shown) => {
-        const [name, rest] = shortName(shown.text, aliases.value);
+        const [name, rest] = shortName(shown.preset ?? shown.text, aliases.value);
         return (
           <li key={shown.id} data-colour={shown.colour}>
             <button type="button" aria-pressed={shown.visible} title={`${name} ${rest}`} onClick={() => setVisible(shown.id, !shown.visible)}>

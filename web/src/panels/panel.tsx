@@ -40,7 +40,7 @@ function Selected({ shown }: { shown: Shown }): JSX.Element {
     document.getElementById(`tab-${next.id}`)?.focus();
   };
   return (
-    <section class="selected" data-open={open} data-colour={shown.colour} aria-label={`Selected: ${shortName(shown.text, aliases.value)[0]}`}>
+    <section class="selected" data-open={open} data-colour={shown.colour} aria-label={`Selected: ${shortName(shown.preset ?? shown.text, aliases.value)[0]}`}>
       <div class="tabs" role="tablist" aria-label="About the selected function" onKeyDown={keys}>
         {tabs.map((t) => (
           <button

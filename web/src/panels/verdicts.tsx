@@ -5,7 +5,7 @@ import { useEffect } from "preact/hooks";
 import { figure, meaning } from "../core/verdicts";
 import { engine } from "../engine/client";
 import type { Angles, Complaint, Report, Verdict, WitnessDirection } from "../engine/protocol";
-import { complaintOf } from "../functions";
+import { complaintOf, find } from "../functions";
 import { say } from "../notices";
 import { type Shown, wi, wo } from "../state";
 import { Hint, Icon, type IconName, Problem } from "./ui";
@@ -69,7 +69,8 @@ export function Verdicts({ shown }: { shown: Shown }): JSX.Element {
         .ask("check", { function: shown.text, effort: effort.value }, { pool: "check", key: "check", interrupt: true })
         .then((reply) => {
           if (reply === null) return;
-          reports.value = new Map(reports.value).set(shown.id, { subject, report: reply.answer });
+          const kept = [...reports.value].filter(([id]) => find(id) !== undefined);
+          reports.value = new Map(kept).set(shown.id, { subject, report: reply.answer });
           if (!gone) running.value = false;
         })
         .catch((error: unknown) => {
