@@ -3,7 +3,7 @@
 use crate::answer::{Answer, colours};
 use crate::complaint::Complaint;
 use crate::light::environment;
-use crate::plots::{Switches, from_viewer, side};
+use crate::plots::{Switches, side};
 use crate::subject::Angles;
 use gonio_brdf::ModelSpec;
 use gonio_env::Environment;
@@ -93,12 +93,12 @@ fn illuminate(scene: &mut Scene, camera: &Camera, of: &Render) -> Result<(), Com
         scene.set_lights(Vec::new(), Some(light));
         return Ok(());
     }
+    // As of the ball: from the direction of the viewer, x to the right, y up.
     let towards = camera
         .to_world
-        .transform_vector(from_viewer(of.direction))
-        .normalize();
+        .transform_vector(of.direction.direction().to_f32());
     let light = Light::Directional {
-        direction: -towards,
+        direction: -towards.normalize(),
         irradiance: [PI; 3],
     };
     scene.set_lights(vec![light], None);

@@ -4,7 +4,6 @@ use crate::answer::{Answer, colours, largest};
 use crate::complaint::Complaint;
 use crate::subject::{Angles, Subject};
 use gonio_brdf::Brdf;
-use gonio_num::Vec3;
 use gonio_plot::numbers::{self, Factors};
 use gonio_plot::{Function, Options, ScaleKind};
 use serde::Deserialize;
@@ -256,9 +255,4 @@ pub(crate) fn plot(of: Plot) -> Result<Answer, Complaint> {
         json!({ "svg": figure.svg(), "notes": figure.notes() }),
         Vec::new(),
     ))
-}
-
-/// Directions of the world (y up, the viewer at +z) by angles from the viewer's direction.
-pub(crate) fn from_viewer(angles: Angles) -> Vec3<f32> {
-    angles.direction().to_f32()
 }
