@@ -2,12 +2,12 @@
 import { effect, signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { busy } from "../engine/client";
-import { complain, dismissNotice, notices } from "../notices";
+import { complain, dismissNotice, notices, say } from "../notices";
 import { permanentLink } from "../persist";
 import { route } from "../route";
 import { helping } from "./help";
 import { taking } from "./take";
-import { copy, Icon, IconButton, Problem } from "./ui";
+import { Icon, IconButton, Problem } from "./ui";
 
 type Theme = "auto" | "light" | "dark";
 const THEMES: readonly Theme[] = ["auto", "light", "dark"];
@@ -38,13 +38,19 @@ function nextTheme(): void {
 }
 
 function copyLink(): void {
-  void permanentLink().then(({ address, needs }) =>
-    copy(address, "Permanent link")
-      .then(() => {
-        if (needs.length > 0) complain({ message: `the link names ${needs.join(", ")} but can't hold so much`, help: "send the file along: the page asks for it", place: null });
-      })
-      .catch(() => (taking.value = true)),
-  );
+  const made = permanentLink();
+  const text = made.then(({ address }) => new Blob([address], { type: "text/plain" }));
+  // The text may come later, but Safari takes only what is offered within the click.
+  const copied =
+    typeof ClipboardItem === "function" ? navigator.clipboard.write([new ClipboardItem({ "text/plain": text })]) : made.then(({ address }) => navigator.clipboard.writeText(address));
+  copied
+    .then(async () => {
+      say("Permanent link copied");
+      const { needs } = await made;
+      if (needs.length > 0) complain({ message: `the link names ${needs.join(", ")}, which a link can't hold`, help: "send the file along: the page asks for it", place: null });
+    })
+    // Without the permission the address is shown, to be copied by hand.
+    .catch(() => (taking.value = true));
 }
 
 export function Bar(): JSX.Element {

@@ -85,7 +85,7 @@ export function Hint({ about, children }: { about: string; children: ComponentCh
   );
 }
 
-export async function copy(text: string, what: string): Promise<void> {
+async function copy(text: string, what: string): Promise<void> {
   await navigator.clipboard.writeText(text);
   say(`${what} copied`);
 }
