@@ -50,6 +50,8 @@ export class Instance {
         ConsoleStdout.lineBuffered((line) => stderr.lines.push(line)),
         new PreopenDirectory("files", files),
       ],
+      // Unless it is told otherwise, the shim writes every path that is opened to the console.
+      { debug: false },
     );
     const instance = await WebAssembly.instantiate(module, { wasi_snapshot_preview1: wasi.wasiImport as WebAssembly.ModuleImports });
     const exports = instance.exports as unknown as Exports;

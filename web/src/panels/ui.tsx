@@ -47,13 +47,16 @@ export function IconButton({ icon, label, ...rest }: ButtonProps): JSX.Element {
 
 /** The library's error, as it is. */
 export function Problem({ complaint, subject, onDismiss }: { complaint: Complaint; subject?: string | null; onDismiss?: () => void }): JSX.Element {
-  const place = complaint.place;
+  const { place } = complaint;
+  // People know the file by its name, not by the engine's folder.
+  const message = complaint.message.replace(/\bfiles\//g, "");
+  const hasPlace = place === null || message.includes(`${place.line}:${place.column}`);
   return (
     <div class="problem" role="alert">
       <div>
         {subject ? <strong>{subject}: </strong> : null}
-        {complaint.message}
-        {place !== null ? <span class="problem-place"> (line {place.line}, column {place.column})</span> : null}
+        {message}
+        {hasPlace ? null : ` (line ${place.line}, column ${place.column})`}
         {complaint.help !== null ? <div class="problem-help">{complaint.help}</div> : null}
       </div>
       {onDismiss ? <IconButton icon="remove" label="Dismiss" onClick={onDismiss} /> : null}
