@@ -90,7 +90,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
         ))}
         {lines.value.flatMap((line) =>
           line.spikes.map(([angle, share]) => (
-            <g key={`${line.key} ${angle}`} class={line.look}>
+            <g key={`${line.key} ${angle}`} class={`series-${line.shown.colour}`}>
               <line class="spike" x1={x(angle)} x2={x(angle)} y1={bottom} y2={top + 24} />
               <path class="arrow" d="M0 0 L-4 9 L4 9 Z" transform={`translate(${x(angle).toFixed(1)} ${top + 20})`} />
               <text class="value strong" x={x(angle)} y={top + 10}>

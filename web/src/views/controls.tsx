@@ -148,7 +148,7 @@ function Readout(): JSX.Element | null {
           return (
             <tr key={f.id} data-function={f.text}>
               <th scope="row" class={`series-${f.colour}`}>
-                <span class="view-dot" /> <span class="readout-name" title={f.text}>{label(f.text)}</span>
+                <span class="view-dot" /> <span class="readout-name" title={f.text}>{label(f)}</span>
               </th>
               {answer !== undefined && (
                 <>

@@ -10,6 +10,7 @@ import { channel, cosine, difference, phiD, type Shown, visible, wi, wo } from "
 import { Bar, BAR } from "./bar";
 import { Complaints, Frame, type Size } from "./frame";
 import { Handle, setWi, setWo } from "./handle";
+import { label } from "./label";
 import { Live, seen, settled } from "./live";
 import { Pixels } from "./pictures";
 import { complaintsOf } from "./reading";
@@ -113,11 +114,11 @@ export function Difference(): JSX.Element {
 }
 
 function Choice({ pair: [a, b] }: { pair: [Shown, Shown] }): JSX.Element {
-  const select = (label: string, value: Shown, set: (id: number) => void): JSX.Element => (
-    <select class={`view-select series-${value.colour}`} aria-label={label} value={value.id} onChange={(event) => set(Number(event.currentTarget.value))}>
+  const select = (name: string, value: Shown, set: (id: number) => void): JSX.Element => (
+    <select class={`view-select series-${value.colour}`} aria-label={name} value={value.id} onChange={(event) => set(Number(event.currentTarget.value))}>
       {visible.value.map((f) => (
         <option key={f.id} value={f.id}>
-          {f.text}
+          {label(f)}
         </option>
       ))}
     </select>

@@ -165,16 +165,16 @@ function Menu({ label, icon, children }: { label: string; icon: ComponentChildre
 export function Complaints({ of }: { of: { colour: number; message: string; help: string | null }[] }): JSX.Element | null {
   if (of.length === 0) return null;
   return (
-    <ul class="view-complaints" role="status">
+    <div class="view-complaints" role="status">
       {of.map((c) => (
-        <li key={c.colour} class={`series-${c.colour}`}>
+        <p key={c.colour} class={`series-${c.colour}`}>
           <span class="view-dot" />
           <span>
             {c.message}
             {c.help !== null && ` – ${c.help}`}
           </span>
-        </li>
+        </p>
       ))}
-    </ul>
+    </div>
   );
 }

@@ -1,12 +1,12 @@
 /** The lobe in space: f for one direction of incidence, as a surface that is turned by dragging. */
-import { computed, effect, useSignalEffect } from "@preact/signals";
+import { computed, effect } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Angles } from "../engine/protocol";
 import { channelOf } from "../plot/colours";
 import { clamp, nudged, toVector } from "../plot/directions";
 import { csvText, pngOfCanvas } from "../plot/save";
-import { type Axis, axis, degrees, number } from "../plot/scale";
+import { type Axis, axis, degrees, number, type Tick } from "../plot/scale";
 import { channel, cosine, scale, visible, wi, wo } from "../state";
 import { Complaints, Frame, type Size } from "./frame";
 import { follow, setWi, setWo } from "./handle";
@@ -166,8 +166,6 @@ function Labels(): JSX.Element {
     const { spikes } = lobes.answers.value.get(String(f.id))?.arrays ?? {};
     return Array.from({ length: Math.floor((spikes?.length ?? 0) / 6) }, (_, k) => ({ look: `series-${f.colour}`, at: [...spikes!.subarray(6 * k, 6 * k + 3)], share: channelOf(channel.value, spikes!, 6 * k + 3) }));
   });
-  // Where the labels are is known after the frame that follows.
-  useSignalEffect(() => void radial.value);
   return (
     <>
       <span class="lobe-label" data-at="0 0 1.33">
@@ -178,13 +176,11 @@ function Labels(): JSX.Element {
           {phi}°
         </span>
       ))}
-      {radial.value.ticks
-        .filter((t) => t.label !== "" && t.position > 0.15)
-        .map((t) => (
-          <span key={t.value} class="lobe-label faint" data-ring={t.position}>
-            {t.label}
-          </span>
-        ))}
+      {apart(radial.value.ticks).map((t) => (
+        <span key={t.value} class="lobe-label faint" data-ring={t.position}>
+          {t.label}
+        </span>
+      ))}
       {spikes.map(({ look, at, share }) => (
         <span key={at.join()} class={`lobe-label ${look}`} data-at={at.map((x) => 1.07 * x).join(" ")}>
           {number(share)}
@@ -192,6 +188,13 @@ function Labels(): JSX.Element {
       ))}
     </>
   );
+}
+
+/** The labelled ticks that don't touch, from the rim inwards. */
+function apart(ticks: Tick[]): Tick[] {
+  const kept: Tick[] = [];
+  for (const tick of [...ticks].reverse()) if (tick.label !== "" && tick.position > 0.15 && (kept.length === 0 || kept.at(-1)!.position - tick.position > 0.13)) kept.push(tick);
+  return kept;
 }
 
 /** Puts the labels and handles where the frame that was drawn has their points. */

@@ -66,7 +66,7 @@ export function Name({ shown, width }: { shown: Shown; width: number }): JSX.Ele
   return (
     <figcaption class={`picture-name series-${shown.colour}`} style={{ maxWidth: `${width}px` }} title={shown.text}>
       <span class="view-dot" />
-      <span class="picture-text">{label(shown.text)}</span>
+      <span class="picture-text">{label(shown)}</span>
     </figcaption>
   );
 }

@@ -39,11 +39,12 @@ export const lines = computed<Line[]>(() => {
     const answer = curves.answers.value.get(String(shown.id));
     if (answer === undefined) continue;
     const { angles, values, spikes } = answer.arrays as Record<string, Float32Array>;
+    // A direction that light leaves in is one arrow, whatever channels are shown.
+    const places: [number, number][] = [];
+    for (let k = 0; k + 3 < (spikes?.length ?? 0); k += 4) places.push([spikes![k]!, channelOf(channel.value, spikes!, k + 1)]);
     for (const one of three ? CHANNELS : [channel.value]) {
       const numbers = new Float32Array(angles!.length);
       for (let k = 0; k < numbers.length; k += 1) numbers[k] = channelOf(one, values!, 3 * k);
-      const places: [number, number][] = [];
-      for (let k = 0; k + 3 < (spikes?.length ?? 0); k += 4) places.push([spikes![k]!, channelOf(one, spikes!, k + 1)]);
       all.push({
         key: `${shown.id}-${one}`,
         shown,
@@ -51,7 +52,7 @@ export const lines = computed<Line[]>(() => {
         dash: dash(shown.colour),
         angles: angles!,
         values: numbers,
-        spikes: places,
+        spikes: three && one !== "red" ? [] : places,
       });
     }
   }

@@ -85,7 +85,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
         <Along class="horizon" from={at2(-90, radius)} to={at2(90, radius)} />
         {lines.value.flatMap((line) =>
           line.spikes.map(([angle, share]) => (
-            <g key={`${line.key} ${angle}`} class={line.look}>
+            <g key={`${line.key} ${angle}`} class={`series-${line.shown.colour}`}>
               <Along class="spike" from={centre} to={at2(angle, 0.76 * radius)} />
               <Head tip={at2(angle, 0.76 * radius)} angle={angle + 180} />
               <text class="value strong" x={at2(angle, 0.76 * radius + 16)[0]} y={at2(angle, 0.76 * radius + 16)[1]}>

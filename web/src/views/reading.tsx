@@ -13,10 +13,16 @@ export function Reading({ place }: { place: "corner" | "inside" }): JSX.Element 
   return (
     <div class={`view-reading ${place}`} aria-hidden="true">
       <span>θr {angle.toFixed(1).replace("-", "−")}°</span>
-      {lines.value.map((line) => (
-        <span key={line.key} class={line.look}>
+      {visible.value.map((f) => (
+        <span key={f.id} class={`series-${f.colour}`}>
           <span class="view-dot" />
-          <b>{Number.isFinite(at(line, angle)) ? number(at(line, angle), 4) : "–"}</b>
+          {lines.value
+            .filter((line) => line.shown.id === f.id)
+            .map((line) => (
+              <b key={line.key} class={line.look}>
+                {Number.isFinite(at(line, angle)) ? number(at(line, angle), 4) : "–"}
+              </b>
+            ))}
         </span>
       ))}
     </div>
