@@ -64,7 +64,7 @@ export function Handle({ which, x, y, angles, moved, keyed, hollow = false }: Ha
       ref={self}
       class={`handle handle-${which}${hollow ? " handle-hollow" : ""} aside`}
       transform={`translate(${x.toFixed(1)} ${y.toFixed(1)})`}
-      tabIndex={0}
+      tabindex={0}
       role="slider"
       aria-label={which === "light" ? "Direction of incidence" : "Direction of view"}
       aria-valuemin={0}
