@@ -54,7 +54,7 @@ function linear(high: number): Axis {
   const lead = Math.round((2 * high) / tenTo(exponent(high * (1 + 1e-9))));
   const parts = [3, 6, 12].includes(lead) ? 3 : lead === 10 ? 5 : 4;
   const values = Array.from({ length: parts + 1 }, (_, k) => (high * k) / parts);
-  return made("linear", 0, high, scale, values, values);
+  return make("linear", 0, high, scale, values, values);
 }
 
 function cubeRoot(high: number): Axis {
@@ -63,7 +63,7 @@ function cubeRoot(high: number): Axis {
   // Not so near the end that the labels touch, nor so near 0 that the lines do.
   for (let e = exponent(high * 0.6); scale(tenTo(e)) > 0.12; e -= 1) decades.unshift(tenTo(e));
   const values = [0, ...decades, high];
-  return made("cube-root", 0, high, scale, values, values);
+  return make("cube-root", 0, high, scale, values, values);
 }
 
 function logarithmic(least: number, most: number): Axis {
@@ -78,14 +78,21 @@ function logarithmic(least: number, most: number): Axis {
     values.push(tenTo(e));
     if (e < top && top - first <= 6) for (let k = 2; k < 10; k += 1) values.push(k * tenTo(e));
   }
-  return made("log", tenTo(first), tenTo(top), scale, values, decades);
+  return make("log", tenTo(first), tenTo(top), scale, values, decades);
 }
 
 const clampTo = (x: number, low: number, high: number): number => Math.min(Math.max(x, low), high);
 
 type Mapping = { (value: number): number; invert(position: number): number };
 
-function made(kind: Scale, low: number, high: number, scale: Mapping, values: number[], labelled: number[]): Axis {
+/** Axes that were made: the same one is the same object, so that what is drawn from it isn't drawn anew. */
+const made = new Map<string, Axis>();
+const KEPT = 200;
+
+function make(kind: Scale, low: number, high: number, scale: Mapping, values: number[], labelled: number[]): Axis {
+  const key = `${kind} ${low} ${high}`;
+  const before = made.get(key);
+  if (before !== undefined) return before;
   const position = (value: number): number => {
     if (Number.isNaN(value)) return value;
     // A logarithm has no place for what is not positive: it stands at the beginning.
@@ -93,7 +100,10 @@ function made(kind: Scale, low: number, high: number, scale: Mapping, values: nu
   };
   const named = new Set(labelled);
   const ticks = values.map((value) => ({ value, position: position(value), label: named.has(value) ? number(value) : "" }));
-  return { kind, low, high, position, value: (p) => scale.invert(p), ticks };
+  const axis: Axis = { kind, low, high, position, value: (p) => scale.invert(p), ticks };
+  if (made.size >= KEPT) made.clear();
+  made.set(key, axis);
+  return axis;
 }
 
 const SMALL = "⁰¹²³⁴⁵⁶⁷⁸⁹";

@@ -34,19 +34,18 @@ export interface FrameProps {
   children: (size: Size) => ComponentChildren;
 }
 
-/** `false` where nothing was drawn yet. */
 async function save(view: ViewName, kind: keyof Saves, saves: Saves): Promise<void> {
-  if (kind === "csv") {
-    const text = saves.csv?.();
-    if (text) hand(`gonio-${view}.csv`, text, "text/csv");
-  } else if (kind === "svg") {
-    const text = saves.svg?.();
-    if (text) hand(`gonio-${view}.svg`, text, "image/svg+xml");
-  } else {
+  const nothing = new Error("nothing has been drawn yet");
+  if (kind === "png") {
     const text = saves.png === undefined ? saves.svg?.() : undefined;
     const blob = await (text ? pngOfSvg(text) : saves.png?.());
-    if (blob) hand(`gonio-${view}.png`, blob);
+    if (!blob) throw nothing;
+    hand(`gonio-${view}.png`, blob);
+    return;
   }
+  const text = saves[kind]?.();
+  if (!text) throw nothing;
+  hand(`gonio-${view}.${kind}`, text, kind === "csv" ? "text/csv" : "image/svg+xml");
 }
 
 export function Frame({ view, title, about, controls, many = false, saves = {}, children }: FrameProps): JSX.Element {

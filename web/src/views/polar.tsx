@@ -186,11 +186,9 @@ function Values({ axis, centre, radius, below }: { axis: Axis; centre: Point; ra
   return (
     <g>
       {labels}
-      {!below && (
-        <text class="value" x={centre[0] + radius} y={centre[1] + 12}>
-          sr⁻¹
-        </text>
-      )}
+      <text class="value" x={centre[0] + radius - (below ? 18 : 0)} y={centre[1] + 12}>
+        {below ? "inside" : "sr⁻¹"}
+      </text>
     </g>
   );
 }

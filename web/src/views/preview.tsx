@@ -16,12 +16,21 @@ import { type Film, Progress } from "./progress";
 import { colour } from "./theme";
 import { useDrawn } from "./timings";
 
-const LIGHTS: [string, string][] = [
-  ["files/sunset.hdr", "Sunset"],
-  ["sky:elevation=30", "Clear sky"],
-  ["uniform:1", "Furnace"],
-  ["point", "Point light"],
+interface Choice {
+  value: string;
+  name: string;
+  /** Stops beside the exposure that is set: daylight in its true units is far brighter than what else there is. */
+  stops: number;
+}
+
+const LIGHTS: Choice[] = [
+  { value: "files/sunset.hdr", name: "Sunset", stops: 0 },
+  { value: "sky:elevation=30", name: "Clear sky, −5 EV", stops: -5 },
+  { value: "uniform:1", name: "Furnace", stops: 0 },
+  { value: "point", name: "Point light", stops: 0 },
 ];
+
+const stops = (): number => exposure.value + (LIGHTS.find((l) => l.value === light.value)?.stops ?? 0);
 
 const ASPECT = { ball: 1, preview: 1.5 } as const;
 /** Pixels of a picture at most: a sample of each takes some microseconds. */
@@ -69,7 +78,7 @@ export function Preview(): JSX.Element {
             <option value="ball">Ball</option>
           </select>
           <select class="view-select" aria-label="Light of the preview" value={light.value} onChange={(event) => (light.value = event.currentTarget.value)}>
-            {LIGHTS.map(([value, name]) => (
+            {LIGHTS.map(({ value, name }) => (
               <option key={value} value={value}>
                 {name}
               </option>
@@ -144,10 +153,10 @@ function Rendered({ size }: { size: Size }): JSX.Element {
 const painters = new WeakMap<Film, { key: string; paint: (out: Uint8ClampedArray) => void }>();
 
 function painted(film: Film): (out: Uint8ClampedArray) => void {
-  const key = `${exposure.value} ${toneMap.value}`;
+  const key = `${stops()} ${toneMap.value}`;
   const before = painters.get(film);
   if (before?.key === key) return before.paint;
-  const [factor, curve] = [2 ** exposure.value / film.samples, toneMap.value];
+  const [factor, curve] = [2 ** stops() / film.samples, toneMap.value];
   const paint = (out: Uint8ClampedArray): void => picture(out, film.sums, factor, curve);
   painters.set(film, { key, paint });
   return paint;
