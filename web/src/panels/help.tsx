@@ -2,8 +2,8 @@
 import { signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { catalogue } from "../catalogue";
-import { Dialog } from "./ui";
 import { Section } from "./description";
+import { Dialog } from "./ui";
 
 export const helping = signal(false);
 

@@ -5,7 +5,8 @@ import { useEffect, useRef } from "preact/hooks";
 import type { Complaint } from "../engine/protocol";
 import { editShader, type Held, sourceOf } from "../files";
 import type { Editor } from "./editor";
-import { Icon, Problem, save } from "./ui";
+import { hand } from "../plot/save";
+import { Icon, Problem } from "./ui";
 
 export function ShaderEditor({ file, complaint }: { file: Held; complaint: Complaint | null }): JSX.Element {
   const { name } = file;
@@ -46,7 +47,7 @@ export function ShaderEditor({ file, complaint }: { file: Held; complaint: Compl
       <div ref={host} class="shader-host" data-loading={loading.value ? "" : undefined} />
       <div class="shader-foot" aria-live="polite">
         {problem !== null ? <Problem complaint={problem} /> : <p class="quiet">Drawn while you type. Tab indents; Escape, then Tab, leaves the editor.</p>}
-        <button type="button" class="button" onClick={() => save(name, editor.current?.text() ?? sourceOf(name) ?? "", "text/plain")}>
+        <button type="button" class="button" onClick={() => hand(name, editor.current?.text() ?? sourceOf(name) ?? "")}>
           <Icon name="take" />
           Save {name}
         </button>

@@ -8,9 +8,10 @@ import { engine } from "../engine/client";
 import type { Complaint, Requests } from "../engine/protocol";
 import { complaintOf } from "../functions";
 import { permanentLink } from "../persist";
+import { hand, pngOfSvg } from "../plot/save";
 import { channel, cosine, current, difference, functions, phiD, scale, visible, wi } from "../state";
-import { Copyable, Dialog, Icon, Problem, save } from "./ui";
 import { Section } from "./description";
+import { Copyable, Dialog, Icon, Problem } from "./ui";
 
 export const taking = signal(false);
 
@@ -98,7 +99,7 @@ function ShaderCode({ text, recordable }: { text: string; recordable: boolean })
       {code.value !== null ? (
         <>
           <Copyable label="Code" text={code.value} />
-          <button type="button" class="button" onClick={() => save(`${fileStem(text)}.${extension}`, code.value!, "text/plain")}>
+          <button type="button" class="button" onClick={() => hand(`${fileStem(text)}.${extension}`, code.value!, "text/plain")}>
             <Icon name="take" />
             Save {fileStem(text)}.{extension}
           </button>
@@ -147,8 +148,8 @@ function Plots(): JSX.Element {
       );
       if (reply === null) return;
       notes.value = reply.answer.notes;
-      if (as === "svg") save(`gonio-${kind}.svg`, reply.answer.svg, "image/svg+xml");
-      else save(`gonio-${kind}.png`, await raster(reply.answer.svg), "image/png");
+      if (as === "svg") hand(`gonio-${kind}.svg`, reply.answer.svg, "image/svg+xml");
+      else hand(`gonio-${kind}.png`, await pngOfSvg(reply.answer.svg));
     } catch (error) {
       problem.value = complaintOf(error);
     } finally {
@@ -184,21 +185,4 @@ function Plots(): JSX.Element {
       {problem.value !== null ? <Problem complaint={problem.value} /> : null}
     </Section>
   );
-}
-
-/** The plot at two pixels for each of its units, as the command's `--density`. */
-async function raster(svg: string): Promise<Blob> {
-  const address = URL.createObjectURL(new Blob([svg], { type: "image/svg+xml" }));
-  try {
-    const image = new Image();
-    image.src = address;
-    await image.decode();
-    const canvas = document.createElement("canvas");
-    canvas.width = 2 * image.naturalWidth;
-    canvas.height = 2 * image.naturalHeight;
-    canvas.getContext("2d")!.drawImage(image, 0, 0, canvas.width, canvas.height);
-    return await new Promise((resolve, reject) => canvas.toBlob((blob) => (blob === null ? reject(new Error("the browser made no PNG of it")) : resolve(blob)), "image/png"));
-  } finally {
-    URL.revokeObjectURL(address);
-  }
 }

@@ -121,16 +121,6 @@ export function Copyable({ label, text }: { label: string; text: string }): JSX.
   );
 }
 
-export function save(name: string, content: BlobPart, type: string): void {
-  const address = URL.createObjectURL(new Blob([content], { type }));
-  const link = document.createElement("a");
-  link.href = address;
-  link.download = name;
-  link.click();
-  // The download has begun by then in every browser.
-  setTimeout(() => URL.revokeObjectURL(address), 10000);
-}
-
 /** A modal dialog; Escape, the button and a click outside close it, and the focus returns to where it was. */
 export function Dialog({ title, onClose, children, wide = false }: { title: string; onClose: () => void; children: ComponentChildren; wide?: boolean }): JSX.Element {
   const dialog = useRef<HTMLDialogElement>(null);
