@@ -1,4 +1,9 @@
 //! [`Kernel`], the two tests that ray queries spend their time in, and their portable form.
+// WebAssembly with vectors has a form of its own, chosen when it is compiled.
+#![cfg_attr(
+    all(target_arch = "wasm32", target_feature = "simd128"),
+    allow(dead_code)
+)]
 
 use super::Ray;
 use super::mesh_tree::MeshTree;

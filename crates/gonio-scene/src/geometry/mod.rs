@@ -17,6 +17,8 @@ mod placed;
 mod query;
 mod sample;
 mod shape;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod simd128;
 mod simple;
 mod sphere_tree;
 mod stack;

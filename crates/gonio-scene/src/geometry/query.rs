@@ -1,7 +1,7 @@
 //! The two ray queries, and the choice of instructions for them.
 
 use super::coherence::are_coherent;
-use super::kernel::{Kernel, Portable};
+use super::kernel::Kernel;
 use super::mesh_tree::{MeshTree, Triangles};
 use super::nearest::Nearest;
 use super::placed::{Kind, Placed};
@@ -10,6 +10,12 @@ use super::sphere_tree::Spheres;
 use super::walk::{BoxRay, Order, Rays, Visitor, walk, walk_many};
 use super::{Geometry, Hit, Ray};
 use gonio_num::Vectors;
+
+/// The kernel of what the program was compiled for.
+#[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+const HERE: super::kernel::Portable = super::kernel::Portable;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+const HERE: super::simd128::Simd128 = super::simd128::Simd128;
 
 /// Which kernel this processor gets.
 #[derive(Debug, Clone, Copy)]
@@ -53,12 +59,12 @@ impl Geometry {
 
     #[inline(never)]
     pub(super) fn intersect_portable(&self, ray: &Ray) -> Option<Hit> {
-        self.search::<Portable, false>(Portable, ray).hit()
+        self.search::<_, false>(HERE, ray).hit()
     }
 
     #[inline(never)]
     pub(super) fn occluded_portable(&self, ray: &Ray) -> bool {
-        self.search::<Portable, true>(Portable, ray).hit().is_some()
+        self.search::<_, true>(HERE, ray).hit().is_some()
     }
 
     /// Both queries, for any kernel.
@@ -142,7 +148,7 @@ impl Geometry {
     /// [`Geometry::search_many`] with the kernel of this processor.
     pub(super) fn ask_many<const ANY: bool>(&self, rays: [&Vectors; 2], nearest: &mut [Nearest]) {
         match self.choice {
-            Choice::Portable => self.search_many::<Portable, ANY>(Portable, rays, nearest),
+            Choice::Portable => self.search_many::<_, ANY>(HERE, rays, nearest),
             #[cfg(target_arch = "x86_64")]
             Choice::Avx2(kernel) => super::avx2::search_many::<ANY>(kernel, self, rays, nearest),
         }
