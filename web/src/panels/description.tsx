@@ -24,13 +24,19 @@ export interface Editing {
 /** The text as it is being written stays until it is left, even where it isn't understood yet. */
 export function TextEditor({ editing, label }: { editing: Editing; label: string }): JSX.Element {
   const draft = useSignal<string | null>(null);
+  const field = useRef<HTMLTextAreaElement>(null);
   const id = useId();
+  // Once the function was changed in another way, what was left here unfinished would hide it.
+  useEffect(() => {
+    if (document.activeElement !== field.current) draft.value = null;
+  }, [editing.text]);
   return (
     <div class="description-text">
       <label class="hidden" for={id}>
         {label}
       </label>
       <textarea
+        ref={field}
         id={id}
         class="code"
         rows={Math.min(6, 1 + Math.floor(editing.text.length / 40))}
