@@ -1,5 +1,6 @@
 import { defineConfig } from "vite";
 import { collect, licenses } from "./licenses.ts";
+import { offline } from "./offline.ts";
 
 export default defineConfig({
   // Relative addresses: the site works in any folder of any server.
@@ -12,6 +13,6 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 700,
   },
-  plugins: [collect(), licenses()],
+  plugins: [collect(), licenses(), offline()],
   worker: { format: "es", plugins: () => [collect()] },
 });

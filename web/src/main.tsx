@@ -9,6 +9,7 @@ import "./look/panel.css";
 import "./look/dialog.css";
 import { App } from "./app";
 import { loadCatalogue } from "./catalogue";
+import { storeForOffline } from "./offline";
 import { persist } from "./persist";
 import { functions } from "./state";
 
@@ -20,3 +21,4 @@ const stop = effect(() => {
   queueMicrotask(() => stop());
 });
 render(<App />, document.getElementById("app")!);
+storeForOffline();
