@@ -19,6 +19,7 @@ mod catalogue;
 mod checking;
 mod complaint;
 mod describe;
+mod learn;
 mod light;
 mod picture;
 mod plots;
@@ -78,6 +79,7 @@ fn answered(text: &str) -> Result<Answer, Complaint> {
         "check" => checking::check(read(request)?),
         "export" => describe::export(read(request)?),
         "file" => describe::file(read(request)?),
+        "learn" => learn::learn(read(request)?),
         other => Err(Complaint::new(format!("there is no operation `{other}`"))),
     }
 }

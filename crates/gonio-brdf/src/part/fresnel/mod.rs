@@ -65,6 +65,22 @@ pub fn dielectric_cosines<R: Real>(outer: R, inner: R, ior: R) -> R {
 /// Source: Born & Wolf, Principles of Optics, §14.4.1.
 #[inline(always)]
 pub fn conductor<R: Real>(cos: R, eta: R, k: R) -> R {
+    let [t1, t2, t3, t4] = conductor_terms(cos, eta, k);
+    // r⊥² = (t1 − t2)/(t1 + t2) and r∥² = r⊥² (t3 − t4)/(t3 + t4): their mean with one division.
+    (t1 - t2) * t3 / ((t1 + t2) * (t3 + t4)).max(R::lit(1e-30))
+}
+
+/// [`conductor`] for light that is polarised: r⊥², across the plane of incidence (s), and r∥², in it (p).
+#[inline(always)]
+pub fn conductor_polarised<R: Real>(cos: R, eta: R, k: R) -> [R; 2] {
+    let [t1, t2, t3, t4] = conductor_terms(cos, eta, k);
+    let across = (t1 - t2) / (t1 + t2).max(R::lit(1e-30));
+    [across, across * (t3 - t4) / (t3 + t4).max(R::lit(1e-30))]
+}
+
+/// The terms t₁ to t₄ with r⊥² = (t₁ − t₂)/(t₁ + t₂), r∥² = r⊥² (t₃ − t₄)/(t₃ + t₄).
+#[inline(always)]
+fn conductor_terms<R: Real>(cos: R, eta: R, k: R) -> [R; 4] {
     let tiny = R::lit(1e-20);
     let cos2 = cos * cos;
     let sin2 = (R::one() - cos2).max(R::zero());
@@ -80,8 +96,7 @@ pub fn conductor<R: Real>(cos: R, eta: R, k: R) -> R {
     let t2 = R::lit(2.0) * p * cos;
     let t3 = (cos2 * a2b2 + sin2 * sin2) * q;
     let t4 = t2 * sin2;
-    // r⊥² = (t1 − t2)/(t1 + t2) and r∥² = r⊥² (t3 − t4)/(t3 + t4): their mean with one division.
-    (t1 - t2) * t3 / ((t1 + t2) * (t3 + t4)).max(R::lit(1e-30))
+    [t1, t2, t3, t4]
 }
 
 /// Schlick's approximation with the reflectance near 82° (cosθ = 1/7) multiplied by a tint:
@@ -234,6 +249,20 @@ impl<R: Real, const N: usize> Fresnel<R, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// tanθ = η is Brewster's angle: nothing of what swings in the plane of incidence is reflected. The mean of both is the unpolarised one.
+    #[test]
+    fn polarised() {
+        let brewster = 1.0 / (1.0f64 + 1.5 * 1.5).sqrt();
+        let [s, p] = conductor_polarised(brewster, 1.5, 0.0);
+        assert!(p < 1e-15 && (s - (1.25f64 / 3.25).powi(2)).abs() < 1e-12);
+        for cos in [0.0, 0.01, 0.3, 0.8, 1.0] {
+            for (eta, k) in [(1.5, 0.0), (0.2, 3.4), (1.4, 7.5)] {
+                let [s, p] = conductor_polarised(cos, eta, k);
+                assert!((0.5 * (s + p) - conductor(cos, eta, k)).abs() < 1e-14);
+            }
+        }
+    }
 
     #[test]
     fn glass_at_normal_and_grazing_incidence() {
