@@ -16,6 +16,8 @@ export interface Ask {
   pool: Pool;
   /** Requests with one key replace each other. */
   key?: string;
+  /** Goes before what waits. */
+  early?: boolean;
   /** A running request of the same key is ended, not let run: for what takes seconds. */
   interrupt?: boolean;
 }
@@ -32,6 +34,7 @@ interface Job {
   operation: Operation;
   request: unknown;
   key: string | null;
+  early: boolean;
   resolve: (reply: Reply | null) => void;
   reject: (error: EngineError) => void;
 }
@@ -82,7 +85,7 @@ export class Engine {
         reject(new EngineError(failure.value));
         return;
       }
-      const job: Job = { id: this.next++, operation, request, key: how.key ?? null, resolve, reject };
+      const job: Job = { id: this.next++, operation, request, key: how.key ?? null, early: how.early ?? URGENT.has(operation), resolve, reject };
       this.enqueue(how.pool, job);
       if (how.interrupt && job.key !== null) this.interrupt(how.pool, job.key);
       this.pump(how.pool);
@@ -179,8 +182,8 @@ export class Engine {
       return;
     }
     busy.value += 1;
-    if (URGENT.has(job.operation)) {
-      const place = queue.findIndex((other) => !URGENT.has(other.operation));
+    if (job.early) {
+      const place = queue.findIndex((other) => !other.early);
       queue.splice(place < 0 ? queue.length : place, 0, job);
     } else queue.push(job);
   }

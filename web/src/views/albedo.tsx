@@ -11,7 +11,7 @@ import { srgb8 } from "../plot/tone";
 import { channel, type Shown, visible, wi } from "../state";
 import { Complaints, Frame, type Size } from "./frame";
 import { Handle, setWi } from "./handle";
-import { type Answer, Live, seen } from "./live";
+import { type Answer, Live, seen, settled } from "./live";
 import { dash, keyedAngle, legend } from "./plane";
 import { complaintsOf } from "./reading";
 import { colour } from "./theme";
@@ -29,11 +29,21 @@ const BATCHES = [
 /** The azimuth matters for what isn't isotropic, and only for that. */
 const azimuth = (f: Shown): number => (f.description?.declares.isotropic === true ? 0 : wi.value.phi);
 
-const albedos = new Live("albedo", "slow", () =>
-  seen.albedo.value
-    ? BATCHES.flatMap((thetas, k) => visible.value.map((f) => ({ key: `${f.id}/${k}`, shown: f, request: { function: f.text, thetas, phi: azimuth(f) } })))
-    : null,
-);
+/** Which functions were asked for at all angles: only the coarse ones follow a slider. */
+const whole = new Map<number, string>();
+
+const albedos = new Live("albedo", "slow", () => {
+  if (!seen.albedo.value) return null;
+  const calm = settled.value;
+  const batches = (f: Shown): number[][] => {
+    const subject = `${f.text} ${azimuth(f)} ${f.revision}`;
+    if (calm) whole.set(f.id, subject);
+    return whole.get(f.id) === subject ? BATCHES : BATCHES.slice(0, 1);
+  };
+  const wishes = visible.value.map((f) => batches(f).map((thetas, k) => ({ key: `${f.id}/${k}`, shown: f, request: { function: f.text, thetas, phi: azimuth(f) } })));
+  // The coarse ones of all functions first.
+  return BATCHES.flatMap((_, k) => wishes.flatMap((w) => w[k] ?? []));
+});
 
 interface Curve {
   shown: Shown;

@@ -28,6 +28,7 @@ const balls = new Live("ball", "fast", () =>
         key: String(f.id),
         shown: f,
         request: { function: f.text, light: wi.value, size: settled.value ? side.value : Math.min(side.value, COARSE), factors: factors.value },
+        fine: settled.value,
       }))
     : null,
 );

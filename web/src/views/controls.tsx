@@ -127,56 +127,58 @@ function Select<T extends string>({ label, options, value, set }: { label: strin
 function Readout(): JSX.Element | null {
   if (wo.value === null) return null;
   return (
-    <table class="readout">
-      <caption class="hidden">Values for the directions of incidence and of view</caption>
-      <thead>
-        <tr>
-          <th scope="col">sr⁻¹</th>
-          <th scope="col">f red</th>
-          <th scope="col">green</th>
-          <th scope="col">blue</th>
-          <th scope="col">f cos θi red</th>
-          <th scope="col">green</th>
-          <th scope="col">blue</th>
-          <th scope="col">pdf</th>
-        </tr>
-      </thead>
-      <tbody>
-        {visible.value.map((f) => {
-          const answer = values.answers.value.get(String(f.id))?.answer;
-          const complaint = complaintsOf(values).find((c) => c.colour === f.colour);
-          return (
-            <tr key={f.id} data-function={f.text}>
-              <th scope="row" class={`series-${f.colour}`}>
-                <span class="view-dot" /> <span class="readout-name" title={f.text}>{label(f)}</span>
-              </th>
-              {answer !== undefined && (
-                <>
-                  {answer.f_per_sr.map((x, k) => (
-                    <td key={`f${k}`}>
-                      <Figure of="f_per_sr" value={x} />
+    <div class="readout" tabindex={0} role="region" aria-label="Values for the directions of incidence and of view">
+      <table>
+        <caption class="hidden">Values for the directions of incidence and of view</caption>
+        <thead>
+          <tr>
+            <th scope="col">sr⁻¹</th>
+            <th scope="col">f red</th>
+            <th scope="col">green</th>
+            <th scope="col">blue</th>
+            <th scope="col">f cos θi red</th>
+            <th scope="col">green</th>
+            <th scope="col">blue</th>
+            <th scope="col">pdf</th>
+          </tr>
+        </thead>
+        <tbody>
+          {visible.value.map((f) => {
+            const answer = values.answers.value.get(String(f.id))?.answer;
+            const complaint = complaintsOf(values).find((c) => c.colour === f.colour);
+            return (
+              <tr key={f.id} data-function={f.text}>
+                <th scope="row" class={`series-${f.colour}`}>
+                  <span class="view-dot" /> <span class="readout-name" title={f.text}>{label(f)}</span>
+                </th>
+                {answer !== undefined && (
+                  <>
+                    {answer.f_per_sr.map((x, k) => (
+                      <td key={`f${k}`}>
+                        <Figure of="f_per_sr" value={x} />
+                      </td>
+                    ))}
+                    {answer.f_cos_per_sr.map((x, k) => (
+                      <td key={`c${k}`}>
+                        <Figure of="f_cos_per_sr" value={x} />
+                      </td>
+                    ))}
+                    <td>
+                      <Figure of="pdf_per_sr" value={answer.pdf_per_sr} />
                     </td>
-                  ))}
-                  {answer.f_cos_per_sr.map((x, k) => (
-                    <td key={`c${k}`}>
-                      <Figure of="f_cos_per_sr" value={x} />
-                    </td>
-                  ))}
-                  <td>
-                    <Figure of="pdf_per_sr" value={answer.pdf_per_sr} />
+                  </>
+                )}
+                {complaint !== undefined && (
+                  <td colSpan={7} class="readout-complaint">
+                    {complaint.message}
                   </td>
-                </>
-              )}
-              {complaint !== undefined && (
-                <td colSpan={7} class="readout-complaint">
-                  {complaint.message}
-                </td>
-              )}
-            </tr>
-          );
-        })}
-      </tbody>
-    </table>
+                )}
+              </tr>
+            );
+          })}
+        </tbody>
+      </table>
+    </div>
   );
 }
 

@@ -38,6 +38,7 @@ const hemispheres = new Live("hemisphere", "fast", () =>
         key: String(f.id),
         shown: f,
         request: { function: f.text, wi: wi.value, size: settled.value ? FINE : COARSE, cosine: cosine.value },
+        fine: settled.value,
       }))
     : null,
 );

@@ -3,10 +3,11 @@
  *
  * What is wanted anew while a call runs replaces what waits, so a drag never queues up work; every answer that arrives is shown.
  */
-import { effect, signal, untracked } from "@preact/signals";
+import { computed, effect, signal, untracked } from "@preact/signals";
 import { engine, EngineError, type Pool } from "../engine/client";
 import type { Complaint, Operation, Reply, Requests } from "../engine/protocol";
 import { functions, phiD, scale, type Shown, turn, type ViewName, wi } from "../state";
+import { pressed } from "./timings";
 
 /** Whether a view can be seen: not scrolled away nor behind a large one. Views that can't ask for nothing. */
 export const seen: Record<ViewName, { value: boolean }> = {
@@ -20,14 +21,18 @@ export const seen: Record<ViewName, { value: boolean }> = {
   difference: signal(false),
 };
 
+/** How often what comes second follows a drag on a slow machine, milliseconds. */
+const PAUSE = 200;
+
 /** How long nothing may change until pictures are made as fine as they can be shown, milliseconds. */
 const CALM = 160;
 
 /** False while something is dragged or a slider moves: what takes longer than a frame is drawn coarsely then. */
 export const settled = signal(true);
+const moving = computed(() => JSON.stringify([functions.value.map((f) => [f.text, f.revision]), wi.value, phiD.value, scale.value, turn.value]));
 let calm = 0;
 effect(() => {
-  void [wi.value, functions.value, phiD.value, scale.value, turn.value];
+  void moving.value;
   settled.value = false;
   clearTimeout(calm);
   calm = setTimeout(() => (settled.value = true), CALM);
@@ -38,11 +43,13 @@ export interface Wish<K extends Operation> {
   request: Requests[K]["request"];
   /** Of which function it is. */
   shown: Shown;
+  /** Whether it only makes finer what is there already: it takes long, and must not stand before the next change. */
+  fine?: boolean;
 }
 
 export interface Answer<K extends Operation> extends Reply<K> {
   request: Requests[K]["request"];
-  /** When what is answered was set. */
+  /** When what is answered was set; 0 where it is only finer than what was there. */
   since: number;
 }
 
@@ -50,29 +57,42 @@ export class Live<K extends Operation> {
   readonly answers = signal<ReadonlyMap<string, Answer<K>>>(new Map());
   readonly complaints = signal<ReadonlyMap<string, Complaint>>(new Map());
   private readonly asked = new Map<string, { text: string; changed: number | undefined }>();
+  /** The newest answer of each key: coarse and fine ones come from different workers. */
+  private readonly newest = new Map<string, number>();
+  /** Whether it follows a drag less often where the plots would suffer. */
+  private readonly second: boolean;
+  private order = 0;
+  private later = 0;
+  private followed = 0;
 
   /** `wanted` reads the state; null while nobody looks, and then nothing changes. */
   constructor(
     private readonly operation: K,
     private readonly pool: Pool,
     wanted: () => Wish<K>[] | null,
-    /** Tells apart the requests of different views that want the same operation. */
-    private readonly name: string = operation,
   ) {
+    this.second = operation !== "curve" && operation !== "evaluate";
     effect(() => {
       const wishes = wanted();
-      if (wishes !== null) untracked(() => this.follow(wishes));
+      if (wishes !== null) untracked(() => this.take(wishes));
     });
   }
 
-  private follow(wishes: Wish<K>[]): void {
+  private take(wishes: Wish<K>[]): void {
     const since = performance.now();
+    clearTimeout(this.later);
+    if (!this.second || !pressed() || wishes.some((w) => w.fine === true) || since - this.followed > PAUSE) this.follow(wishes, since);
+    else this.later = setTimeout(() => this.follow(wishes, since), PAUSE - (since - this.followed));
+  }
+
+  private follow(wishes: Wish<K>[], since: number): void {
+    this.followed = performance.now();
     const keys = new Set(wishes.map((w) => w.key));
     const gone = [...this.asked.keys()].filter((key) => !keys.has(key));
     if (gone.length > 0) {
       for (const key of gone) {
         this.asked.delete(key);
-        engine.drop(this.pool, `${this.name}/${key}/`);
+        for (const pool of new Set<Pool>([this.pool, "slow"])) engine.drop(pool, `${this.operation}/${key}/`);
       }
       this.answers.value = without(this.answers.value, gone);
       this.complaints.value = without(this.complaints.value, gone);
@@ -84,14 +104,19 @@ export class Live<K extends Operation> {
       if (before?.text === text) continue;
       this.asked.set(wish.key, { text, changed });
       // A description is what the library made of a slider that was moved some time before.
-      void this.ask(wish, changed !== undefined && changed !== before?.changed ? changed : since);
+      const set = changed !== undefined && changed !== before?.changed ? changed : since;
+      void this.ask(wish, wish.fine === true ? 0 : set);
     }
   }
 
-  private async ask({ key, request }: Wish<K>, since: number): Promise<void> {
+  private async ask({ key, request, fine }: Wish<K>, since: number): Promise<void> {
+    const order = ++this.order;
+    const place = `${this.operation}/${key}/`;
     try {
-      const reply = await engine.ask(this.operation, request, { pool: this.pool, key: `${this.name}/${key}/` });
-      if (reply === null || !this.asked.has(key)) return;
+      if (fine !== true && this.pool !== "slow") engine.drop("slow", place);
+      const reply = await engine.ask(this.operation, request, fine === true ? { pool: "slow", key: place, early: true } : { pool: this.pool, key: place });
+      if (reply === null || !this.asked.has(key) || order < (this.newest.get(key) ?? 0)) return;
+      this.newest.set(key, order);
       if (this.complaints.value.has(key)) this.complaints.value = without(this.complaints.value, [key]);
       this.answers.value = new Map(this.answers.value).set(key, { ...reply, request, since });
     } catch (error) {

@@ -36,6 +36,9 @@ import { lobeMaterial, setContours, setOpacity } from "./lobe-material";
 /** How far out the light and the viewer are, where the rim of the axis is at 1. */
 export const REACH = 1.22;
 
+/** A frame of a usual screen with some slack, milliseconds. */
+const FRAME = 20;
+
 export interface Part {
   /** sRGB, as a style sheet has it. */
   colour: string;
@@ -73,7 +76,12 @@ export class LobeScene {
   private readonly skin = lobeMaterial();
   private width = 1;
   private height = 1;
-  private frame = 0;
+  private waiting = false;
+  private gone = false;
+  private shown = true;
+  /** When the last frame was begun, and by how much it held up the next: without a graphics card a frame may take a tenth of a second. */
+  private last = 0;
+  private cost = 0;
   /** Of the camera about the normal, and above the surface, radians. */
   azimuth = -1.08;
   elevation = 0.42;
@@ -90,7 +98,7 @@ export class LobeScene {
   }
 
   dispose(): void {
-    cancelAnimationFrame(this.frame);
+    this.gone = true;
     for (const group of [this.stage, this.lobes, this.light, this.viewer]) empty(group);
     this.inks.dispose();
     this.skin.dispose();
@@ -191,13 +199,30 @@ export class LobeScene {
     this.invalidate();
   }
 
+  /** Whether anybody sees it; frames that nobody sees aren't drawn. */
+  setShown(shown: boolean): void {
+    this.shown = shown;
+    if (shown) this.invalidate();
+  }
+
+  /** Draws in the next frame; where drawing is slow, not so often that it takes more than a fifth of the time from everything else. */
   invalidate(): void {
-    if (this.frame !== 0) return;
-    this.frame = requestAnimationFrame(() => {
-      this.frame = 0;
-      this.render();
-      this.drawn();
-    });
+    if (this.waiting || !this.shown) return;
+    this.waiting = true;
+    const wait = this.last + 4 * this.cost - performance.now();
+    if (wait > 0) setTimeout(() => requestAnimationFrame(() => this.draw()), wait);
+    else requestAnimationFrame(() => this.draw());
+  }
+
+  private draw(): void {
+    this.waiting = false;
+    if (this.gone) return;
+    const start = performance.now();
+    this.last = start;
+    this.render();
+    this.drawn();
+    // The next frame comes when this one has been dealt with: what it is late is what this one cost.
+    requestAnimationFrame(() => (this.cost = 0.5 * this.cost + 0.5 * Math.max(0, performance.now() - start - FRAME)));
   }
 
   /** Where a point is on the view; after `render`. */

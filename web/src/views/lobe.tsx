@@ -22,6 +22,7 @@ const lobes = new Live("lobe", "fast", () =>
         key: String(f.id),
         shown: f,
         request: { function: f.text, wi: wi.value, scale: scale.value, cosine: cosine.value, quick: !settled.value },
+        fine: settled.value,
       }))
     : null,
 );
@@ -106,9 +107,11 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
             theme.value;
             made.setStage(radial.value, colours());
           }),
+          effect(() => made.setShown(seen.lobe.value)),
           effect(() => {
             theme.value;
             made.setLight(wi.value, colours());
+            place(made, overlay.current!, REACH);
           }),
           effect(() => {
             theme.value;

@@ -29,8 +29,18 @@ export function drawn(view: ViewName, since: number): void {
   list.push(timing);
   if (list.length > KEPT) list.shift();
   // A task that is queued in a frame's callback runs after that frame.
-  requestAnimationFrame(() => setTimeout(() => (timing.painted = performance.now() - since)));
+  requestAnimationFrame(() =>
+    setTimeout(() => {
+      timing.painted = performance.now() - since;
+      if (view === "polar" || view === "cartesian") latency = 0.7 * latency + 0.3 * timing.painted;
+    }),
+  );
 }
+
+let latency = 0;
+
+/** Whether the plots come later than they should: then what else follows a drag must wait. */
+export const pressed = (): boolean => latency > 33;
 
 /** To be called by a view with the time of the newest change that it draws; 0 where it draws nothing. */
 export function useDrawn(view: ViewName, since: number): void {
