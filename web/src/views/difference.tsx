@@ -20,7 +20,7 @@ import { useDrawn } from "./timings";
 
 /** Values along the diameter of the hemisphere: while something moves, and then. */
 const COARSE = 72;
-const FINE = 181;
+const FINE = 256;
 /** The angle of a slice's last node, degrees. */
 const LAST = 89.9;
 
@@ -227,7 +227,7 @@ function Disc({ side }: { side: number }): JSX.Element {
       {[30, 60].map((t) => (
         <circle key={t} class="over-grid" cx={half} cy={half} r={(t / 90) * half} />
       ))}
-      <circle class="rim" cx={half} cy={half} r={half - 0.5} />
+      <circle class="over-rim" cx={half} cy={half} r={half - 1} />
       {view !== null && (
         <Handle
           which="viewer"
