@@ -95,6 +95,10 @@ work!(PdfOf: pdf -> R);
 work!(EvalAndPdfOf: eval_and_pdf -> ([R; N], R));
 work!(SampleOf: sample -> Sample<R, N>);
 
+/// Whether a value and its density come from one function for both, the same to the bit: where a page loads the code, half of it matters more
+/// than the time.
+const ONE_FOR_BOTH: bool = cfg!(target_family = "wasm");
+
 macro_rules! models {
     ($($(#[$doc:meta])* $variant:ident: $module:ident,)*; composites $($(#[$cdoc:meta])* $composite:ident: $cmodule:ident,)*) => {
         /// Any reflection function of the registry.
@@ -111,9 +115,15 @@ macro_rules! models {
         // and a compiler would choke on it. Batches choose the model once, through `visit`.
         impl<R: Number, const N: usize> Brdf<R, N> for Model<R, N> {
             fn eval(&self, wi: Vec3<R>, wo: Vec3<R>) -> [R; N] {
+                if ONE_FOR_BOTH {
+                    return self.eval_and_pdf(wi, wo).0;
+                }
                 match self { $(Self::$variant(m) => R::out_of_line(EvalOf::<_, R, N>(m, wi, wo)),)* $(Self::$composite(m) => R::out_of_line(EvalOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> R {
+                if ONE_FOR_BOTH {
+                    return self.eval_and_pdf(wi, wo).1;
+                }
                 match self { $(Self::$variant(m) => R::out_of_line(PdfOf::<_, R, N>(m, wi, wo)),)* $(Self::$composite(m) => R::out_of_line(PdfOf::<_, R, N>(m, wi, wo)),)* }
             }
             fn eval_and_pdf(&self, wi: Vec3<R>, wo: Vec3<R>) -> ([R; N], R) {
@@ -164,6 +174,11 @@ macro_rules! models {
             /// Calls the visitor with the model in its own type.
             pub(crate) fn visit<V: Visitor<R, N>>(&self, visitor: V) {
                 match self { $(Self::$variant(m) => visitor.visit(m),)* $(Self::$composite(m) => visitor.visit_composite(m),)* }
+            }
+
+            /// Whether it is made of others.
+            pub(crate) fn is_composite(&self) -> bool {
+                match self { $(Self::$variant(_) => false,)* $(Self::$composite(_) => true,)* }
             }
 
             /// The registry's entry.
