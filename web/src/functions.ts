@@ -41,11 +41,12 @@ export function add(text: string, shown: { colour?: number; visible?: boolean } 
   return id;
 }
 
-async function settle(id: number, asked: Promise<Reply<"describe"> | Reply<"set"> | null>, preset: string | null): Promise<boolean> {
+/** Whether the library understood; null if a newer request took this one's place. */
+async function settle(id: number, asked: Promise<Reply<"describe"> | Reply<"set"> | null>, preset: string | null): Promise<boolean | null> {
   const changed = performance.now();
   try {
     const reply = await asked;
-    if (reply === null) return false;
+    if (reply === null) return null;
     const description: Description = reply.answer;
     update(id, { text: description.text, preset, description, complaint: null, changed });
     return true;
@@ -56,7 +57,7 @@ async function settle(id: number, asked: Promise<Reply<"describe"> | Reply<"set"
 }
 
 /** Describes the function by this text; if the library can't, the complaint is shown and the views keep what they have. */
-export async function setText(id: number, text: string): Promise<boolean> {
+export async function setText(id: number, text: string): Promise<boolean | null> {
   pending.delete(id);
   texts.set(id, text);
   const preset = /^[\w-]+@[\w-]+$/.test(text) ? text : null;
@@ -66,7 +67,7 @@ export async function setText(id: number, text: string): Promise<boolean> {
 }
 
 /** Sets parameters, or takes them away (null). */
-export async function setValues(id: number, values: Record<string, string | null>): Promise<boolean> {
+export async function setValues(id: number, values: Record<string, string | null>): Promise<boolean | null> {
   const shown = find(id);
   if (shown === undefined) return false;
   const all = { ...pending.get(id), ...values };

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { addPart, colourText, composite, fileName, filesIn, removePart, replacePart, shortName } from "./text";
+import { addPart, colourText, composite, fileName, filesIn, parseColour, removePart, replacePart, shortName } from "./text";
 
 describe("parts of a composite", () => {
   it("gives settings to the model before them", () => {
@@ -50,6 +50,11 @@ describe("names of files", () => {
   it("are found in descriptions", () => {
     expect(filesIn("sum(files/a-2.wgsl:tint=0.1, scaled(0.5, files/paint.binary), files/a-2.wgsl)")).toEqual(["a-2.wgsl", "paint.binary"]);
   });
+});
+
+it("reads the colours that it writes", () => {
+  for (const rgb of [[0.5, 0.5, 0.5], [1, 0.25, 0]] as [number, number, number][]) expect(parseColour(colourText(rgb))).toEqual(rgb);
+  for (const text of ["", "0.1/0.2", "a", "0.1//0.3", "#ff0000"]) expect(parseColour(text)).toBeNull();
 });
 
 it("writes colours as short as it can", () => {

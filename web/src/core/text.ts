@@ -119,6 +119,14 @@ export function colourText(rgb: readonly [number, number, number]): string {
   return r === g && g === b ? short(r) : `${short(r)}/${short(g)}/${short(b)}`;
 }
 
+/** A colour that is written as numbers, or null. */
+export function parseColour(text: string): [number, number, number] | null {
+  const parts = text.split("/").map((part) => (part.trim() === "" ? NaN : Number(part)));
+  if (!parts.every(Number.isFinite)) return null;
+  if (parts.length === 1) return [parts[0]!, parts[0]!, parts[0]!];
+  return parts.length === 3 ? [parts[0]!, parts[1]!, parts[2]!] : null;
+}
+
 /** A name that stands for a model with some parameters set. */
 export interface Alias {
   name: string;

@@ -17,7 +17,7 @@ export interface Editing {
   text: string;
   description: Description | null;
   /** Another text. */
-  change: (text: string) => Promise<boolean>;
+  change: (text: string) => Promise<boolean | null>;
   set: Set;
 }
 
@@ -132,7 +132,7 @@ interface PartProps {
   editorKey: string;
   text: string;
   number: number;
-  change: (text: string) => Promise<boolean>;
+  change: (text: string) => Promise<boolean | null>;
   remove: (() => void) | null;
 }
 
@@ -155,7 +155,7 @@ function PartEditor({ editorKey, text, number, change, remove }: PartProps): JSX
     const asked = values.current;
     try {
       const reply = await engine.ask("set", { function: text, values: asked }, { pool: "fast", key: `set-part:${editorKey}` });
-      if (reply === null) return false;
+      if (reply === null) return null;
       problem.value = null;
       return await change(reply.answer.text);
     } catch (error) {

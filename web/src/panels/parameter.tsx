@@ -2,13 +2,16 @@
 import { useSignal } from "@preact/signals";
 import type { ComponentChildren, InputHTMLAttributes, JSX } from "preact";
 import { useId, useRef } from "preact/hooks";
-import { colourText, short } from "../core/text";
+import { colourText, parseColour, short } from "../core/text";
 import { fromHex, position, toHex, value } from "../core/scales";
 import type { Parameter } from "../engine/protocol";
 import { Hint, IconButton } from "./ui";
 
-/** Sets the parameter to a text, or takes it away; resolves when the library has answered, to false if it refused. */
-export type Set = (name: string, text: string | null) => Promise<boolean>;
+/**
+ * Sets the parameter to a text, or takes it away; resolves when the library has answered: to false if it refused, to null if a newer request, which holds
+ * this change too, came before.
+ */
+export type Set = (name: string, text: string | null) => Promise<boolean | null>;
 
 interface Props<K extends Parameter["kind"] = Parameter["kind"]> {
   parameter: Extract<Parameter, { kind: K }>;
@@ -100,7 +103,8 @@ function NumberControl({ parameter, set }: Props<"number">): JSX.Element {
   const id = useId();
   const { draft, refused, change, reset } = useDraft(parameter.name, set);
   const { low, high } = parameter;
-  const shown = draft !== null && !refused ? Number(draft) : (parameter.value ?? parameter.default);
+  const asked = draft === null || refused || draft === "" ? NaN : Number(draft);
+  const shown = Number.isFinite(asked) ? asked : (parameter.value ?? parameter.default);
   const text = draft ?? (shown === null ? "" : short(shown));
   return (
     <Row
@@ -150,7 +154,7 @@ function Figure({ id, label, text, refused, change, colour = false }: FigureProp
 function ColourControl({ parameter, set }: Props<"colour">): JSX.Element {
   const id = useId();
   const { draft, refused, change, reset } = useDraft(parameter.name, set);
-  const shown = parameter.value ?? parameter.default;
+  const shown = (draft === null || refused ? null : parseColour(draft)) ?? parameter.value ?? parameter.default;
   const ratio = useRef<[number, number, number]>([1, 1, 1]);
   const { low, high } = parameter;
   const displayable = low >= 0 && high <= 1;
