@@ -1,8 +1,10 @@
 import { describe, expect, test } from "vitest";
 import { channelOf, magma, NOT_FINITE, ofDifference, ofValue } from "./colours";
 import * as directions from "./directions";
+import { grid } from "./grid";
+import { csvText } from "./save";
 import { aligned, axis, degrees, number, roundUp } from "./scale";
-import { shown, srgb8 } from "./tone";
+import { picture, shown, srgb8 } from "./tone";
 
 describe("directions", () => {
   test("angles and vectors are inverse", () => {
@@ -153,5 +155,24 @@ describe("tone curves", () => {
     expect(shown([0, 0, 0], 0, "aces")).toEqual([0, 0, 0]);
     // (1.0) by hand: the rows of the first matrix sum to 1, so every channel is (1 + 0.0245786 − 0.000090537) / 1.654761 = 0.619098.
     expect(shown([1, 1, 1], 0, "aces")).toEqual([0.619098, 0.619098, 0.619098].map(srgb8));
+  });
+});
+
+describe("pictures and tables", () => {
+  test("pixels that are not a number are transparent, infinite ones are white", () => {
+    const out = new Uint8ClampedArray(8);
+    picture(out, [NaN, NaN, NaN, Infinity, Infinity, Infinity], 1, "srgb");
+    expect([...out]).toEqual([0, 0, 0, 0, 255, 255, 255, 255]);
+  });
+
+  test("a grid makes its cells as large as can be", () => {
+    expect(grid(1, { width: 216, height: 116 }, 1)).toEqual({ columns: 1, cell: { width: 100, height: 100 } });
+    expect(grid(2, { width: 216, height: 136 }, 1)).toEqual({ columns: 2, cell: { width: 96, height: 96 } });
+    expect(grid(2, { width: 116, height: 400 }, 1).columns).toBe(1);
+    expect(grid(3, { width: 10, height: 10 }, 1).cell.width).toBe(0);
+  });
+
+  test("a table quotes names, keeps nine digits and leaves out what is no number", () => {
+    expect(csvText(["a,b", "c"], [[1 / 3, NaN], [Infinity, -2e-8]])).toBe('"a,b",c\r\n0.333333333,\r\nInfinity,-2e-8\r\n');
   });
 });

@@ -2,15 +2,11 @@
 import { effect, signal } from "@preact/signals";
 import type { ComponentChildren, JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
+import type { Size } from "../plot/grid";
 import { hand, pngOfSvg } from "../plot/save";
 import { large, type ViewName } from "../state";
 import { seen } from "./live";
 import "./views.css";
-
-export interface Size {
-  width: number;
-  height: number;
-}
 
 /** What a view can be saved as; each is made when it is asked for. */
 export interface Saves {

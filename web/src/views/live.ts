@@ -7,7 +7,7 @@ import { computed, effect, signal, untracked } from "@preact/signals";
 import { engine, EngineError, type Pool } from "../engine/client";
 import type { Complaint, Operation, Reply, Requests } from "../engine/protocol";
 import { functions, phiD, scale, type Shown, turn, type ViewName, wi } from "../state";
-import { pressed } from "./timings";
+import { begun, pressed } from "./timings";
 
 /** Whether a view can be seen: not scrolled away nor behind a large one. Views that can't ask for nothing. */
 export const seen: Record<ViewName, { value: boolean }> = {
@@ -73,6 +73,7 @@ export class Live<K extends Operation> {
   ) {
     this.second = operation !== "curve" && operation !== "evaluate";
     effect(() => {
+      if (this.second && !begun.value) return;
       const wishes = wanted();
       if (wishes !== null) untracked(() => this.take(wishes));
     });

@@ -5,16 +5,17 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import type { Angles } from "../engine/protocol";
 import { channelOf } from "../plot/colours";
 import { clamp, nudged, toVector } from "../plot/directions";
+import type { Size } from "../plot/grid";
 import { csvText, pngOfCanvas } from "../plot/save";
 import { type Axis, axis, degrees, number, type Tick } from "../plot/scale";
 import { channel, cosine, scale, visible, wi, wo } from "../state";
-import { Complaints, Frame, type Size } from "./frame";
+import { Complaints, Frame } from "./frame";
 import { follow, setWi, setWo } from "./handle";
 import { Live, seen, settled } from "./live";
 import type { Colours, LobeScene, Part } from "./lobe-scene";
 import { complaintsOf } from "./reading";
 import { colour, theme } from "./theme";
-import { drawn } from "./timings";
+import { begun, drawn } from "./timings";
 
 const lobes = new Live("lobe", "fast", () =>
   seen.lobe.value
@@ -92,7 +93,9 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
   useEffect(() => {
     let gone = false;
     const stops: (() => void)[] = [];
-    import("./lobe-scene")
+    const first = new Promise<void>((resolve) => stops.push(effect(() => (begun.value ? resolve() : undefined))));
+    first
+      .then(() => import("./lobe-scene"))
       .then(({ LobeScene, REACH }) => {
         if (gone) return;
         let newest = 0;

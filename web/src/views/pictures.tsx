@@ -1,27 +1,9 @@
 /** Pictures of several functions side by side, each with its name. */
 import type { ComponentChildren, JSX } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
+import { grid, type Size } from "../plot/grid";
 import type { Shown } from "../state";
-import type { Size } from "./frame";
 import { label } from "./label";
-
-/** Room for a name above a picture. */
-const NAME = 20;
-const GAP = 8;
-
-/** Columns and cell size for `count` pictures of an aspect, as large as can be; `foot` is what each needs below it. */
-export function grid(count: number, { width, height }: Size, aspect: number, foot = 0): { columns: number; cell: Size } {
-  const name = count > 1 ? NAME : 0;
-  let best = { columns: 1, cell: { width: 0, height: 0 } };
-  for (let columns = 1; columns <= Math.max(1, count); columns += 1) {
-    const rows = Math.ceil(count / columns);
-    const w = (width - GAP * (columns + 1)) / columns;
-    const h = (height - GAP * (rows + 1)) / rows - name - foot;
-    const cell = { width: Math.floor(Math.min(w, h * aspect)), height: Math.floor(Math.min(w, h * aspect) / aspect) };
-    if (cell.width > best.cell.width) best = { columns, cell };
-  }
-  return best;
-}
 
 export interface Picture {
   shown: Shown;

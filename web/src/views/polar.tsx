@@ -2,10 +2,11 @@
 import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
 import { angleOnPolar, clamp, fromPlane, inPlane, onPolar, STEEPEST } from "../plot/directions";
+import type { Size } from "../plot/grid";
 import { svgText } from "../plot/save";
 import { type Axis, number } from "../plot/scale";
 import { channel, cosine, scale, wi, wo } from "../state";
-import { Complaints, Frame, type Size } from "./frame";
+import { Complaints, Frame } from "./frame";
 import { Handle, setWi, setWo } from "./handle";
 import { at, curves, keyedAngle, legend, type Line, lines, looked, since, table, transmits, valueAxis } from "./plane";
 import { complaintsOf, Reading } from "./reading";

@@ -4,17 +4,18 @@ import type { JSX } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { held } from "../files";
 import { fromDisc, nudged, onDisc, wrap } from "../plot/directions";
+import { grid, type Size } from "../plot/grid";
 import { beside, pngOfCanvas } from "../plot/save";
 import { picture } from "../plot/tone";
 import { exposure, factors, large, light, object, toneMap, turn, visible, wi } from "../state";
 import { FactorSwitches } from "./factors";
-import { Complaints, Frame, type Size } from "./frame";
+import { Complaints, Frame } from "./frame";
 import { follow, Handle, setWi } from "./handle";
 import { seen, settled } from "./live";
-import { grid, type Picture, Pictures } from "./pictures";
+import { type Picture, Pictures } from "./pictures";
 import { type Film, Progress } from "./progress";
 import { colour } from "./theme";
-import { useDrawn } from "./timings";
+import { begun, useDrawn } from "./timings";
 
 interface Choice {
   value: string;
@@ -25,12 +26,13 @@ interface Choice {
 
 const LIGHTS: Choice[] = [
   { value: "files/sunset.hdr", name: "Sunset", stops: 0 },
-  { value: "sky:elevation=30", name: "Clear sky, −5 EV", stops: -5 },
+  { value: "sky:elevation=30", name: "Clear sky", stops: -5 },
   { value: "uniform:1", name: "Furnace", stops: 0 },
   { value: "point", name: "Point light", stops: 0 },
 ];
 
-const stops = (): number => exposure.value + (LIGHTS.find((l) => l.value === light.value)?.stops ?? 0);
+const own = (): number => LIGHTS.find((l) => l.value === light.value)?.stops ?? 0;
+const stops = (): number => exposure.value + own();
 
 const ASPECT = { ball: 1, preview: 1.5 } as const;
 /** Pixels of a picture at most: a sample of each takes some microseconds. */
@@ -43,7 +45,7 @@ const progress = new Progress();
 const pixels = signal<Size>({ width: 0, height: 0 });
 
 effect(() => {
-  if (!seen.preview.value || pixels.value.width === 0) return;
+  if (!begun.value || !seen.preview.value || pixels.value.width === 0) return;
   const point = light.value === "point";
   const motifs = visible.value.map((f) => ({
     key: `preview-${f.id}`,
@@ -143,6 +145,7 @@ function Rendered({ size }: { size: Size }): JSX.Element {
       {all.length > 0 && (
         <p class="view-note" data-samples={least}>
           {least} {least === 1 ? "sample" : "samples"} a pixel
+          {own() !== 0 && `; ${own() < 0 ? "−" : "+"}${Math.abs(own())} EV for this light`}
           {rejected > 0 && `; ${rejected} samples were not finite and are left out`}
         </p>
       )}

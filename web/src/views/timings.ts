@@ -1,4 +1,5 @@
 /** How long it takes from a change to what is drawn of it, for every view: `window.__gonio.timings`. */
+import { signal } from "@preact/signals";
 import { useLayoutEffect } from "preact/hooks";
 import type { ViewName } from "../state";
 
@@ -32,10 +33,15 @@ export function drawn(view: ViewName, since: number): void {
   requestAnimationFrame(() =>
     setTimeout(() => {
       timing.painted = performance.now() - since;
+      begun.value = true;
       if (view === "polar" || view === "cartesian") latency = 0.7 * latency + 0.3 * timing.painted;
     }),
   );
 }
+
+/** Whether the first plots are on the screen: everything else begins then, or when they don't come. */
+export const begun = signal(false);
+setTimeout(() => (begun.value = true), 2000);
 
 let latency = 0;
 
