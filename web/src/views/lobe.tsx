@@ -148,7 +148,7 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
   return (
     <>
       <canvas ref={canvas} class="lobe-canvas" />
-      <div ref={overlay} class="lobe-overlay" tabIndex={0} role="group" aria-label="Lobe in space: arrow keys turn it, plus and minus scale it" onKeyDown={(e) => turnByKey(e, scene.current)} onPointerDown={(e) => turnByPointer(e, scene.current)} onWheel={(e) => zoomByWheel(e, scene.current)}>
+      <div ref={overlay} class={there ? "lobe-overlay" : "lobe-overlay empty"} tabIndex={0} role="group" aria-label="Lobe in space: arrow keys turn it, plus and minus scale it" onKeyDown={(e) => turnByKey(e, scene.current)} onPointerDown={(e) => turnByPointer(e, scene.current)} onWheel={(e) => zoomByWheel(e, scene.current)}>
         <Labels />
         <Knob which="light" scene={scene} />
         <Knob which="viewer" scene={scene} />
