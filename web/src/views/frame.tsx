@@ -7,6 +7,7 @@ import { hand, pngOfSvg } from "../plot/save";
 import { large, type ViewName } from "../state";
 import { seen } from "./live";
 import "./views.css";
+import "./plots.css";
 
 /** What a view can be saved as; each is made when it is asked for. */
 export interface Saves {

@@ -6,7 +6,7 @@ import type { Angles } from "../engine/protocol";
 import { channelOf } from "../plot/colours";
 import { clamp, nudged, toVector } from "../plot/directions";
 import type { Size } from "../plot/grid";
-import { csvText, pngOfCanvas } from "../plot/save";
+import { beside, csvText, pngOfCanvas } from "../plot/save";
 import { type Axis, axis, degrees, number, type Tick } from "../plot/scale";
 import { channel, cosine, scale, visible, wi, wo } from "../state";
 import { Complaints, Frame } from "./frame";
@@ -16,6 +16,7 @@ import type { Colours, LobeScene, Part } from "./lobe-scene";
 import { complaintsOf } from "./reading";
 import { colour, theme } from "./theme";
 import { begun, drawn } from "./timings";
+import "./lobe.css";
 
 const lobes = new Live("lobe", "fast", () =>
   seen.lobe.value
@@ -74,7 +75,7 @@ export function Lobe(): JSX.Element {
           if (scene.current === null) return null;
           // What was drawn is kept for the screen only: draw, and read in the same task.
           scene.current.render();
-          return pngOfCanvas(scene.current.canvas);
+          return pngOfCanvas(beside([scene.current.canvas], colour("--surface")));
         },
         csv: table,
       }}

@@ -4,6 +4,7 @@ import { useLayoutEffect, useRef } from "preact/hooks";
 import { grid, type Size } from "../plot/grid";
 import type { Shown } from "../state";
 import { label } from "./label";
+import "./pictures.css";
 
 export interface Picture {
   shown: Shown;
