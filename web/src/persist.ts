@@ -64,7 +64,8 @@ async function restore(hash: string): Promise<void> {
   missing.value = linked.needs.filter((name) => !engine.hasFile(name));
   state.wi.value = linked.wi;
   state.wo.value = linked.wo;
-  state.scale.value = linked.scale;
+  // Beside a metal's peak a plastic's can be seen with the cube root only; a link says what it wants.
+  state.scale.value = hash.length > 1 ? linked.scale : "cube-root";
   state.channel.value = linked.channel;
   state.cosine.value = linked.cosine;
   state.exposure.value = linked.exposure;
