@@ -32,10 +32,10 @@ export function toAngles(v: Vector, phi = 0): Angles {
   return { theta: Math.atan2(across, v[2]) / DEGREE, phi: across < 1e-12 ? phi : wrap(Math.atan2(v[1], v[0]) / DEGREE) };
 }
 
-/** As a direction of incidence can be set: above the horizon, to a hundredth of a degree. */
-export function incident({ theta, phi }: Angles): Angles {
+/** As a direction can be set: to a hundredth of a degree, one of incidence above the horizon. */
+export function incident({ theta, phi }: Angles, steepest = STEEPEST): Angles {
   const round = (x: number): number => Math.round(x * 100) / 100;
-  return { theta: clamp(round(theta), 0, STEEPEST), phi: wrap(round(phi)) };
+  return { theta: clamp(round(theta), 0, steepest), phi: wrap(round(phi)) };
 }
 
 /** Where a mirror sends light from `wi`. */
@@ -118,26 +118,27 @@ export function fromHalfDifference(thetaH: number, thetaD: number, phiD: number,
  * A direction after a key: up and down change θ, left and right φ, by a degree, by 10 with Shift, by a tenth with Alt; Home is the normal, End
  * the steepest. Null for keys that mean nothing.
  */
-export function nudged(from: Angles, key: string, by: { shift: boolean; alt: boolean }): Angles | null {
+export function nudged(from: Angles, key: string, by: { shift: boolean; alt: boolean }, steepest = STEEPEST): Angles | null {
   const step = by.shift ? 10 : by.alt ? 0.1 : 1;
   const { theta, phi } = from;
+  const set = (t: number, p: number): Angles => incident({ theta: t, phi: p }, steepest);
   switch (key) {
     case "ArrowUp":
-      return incident({ theta: theta - step, phi });
+      return set(theta - step, phi);
     case "ArrowDown":
-      return incident({ theta: theta + step, phi });
+      return set(theta + step, phi);
     case "ArrowLeft":
-      return incident({ theta, phi: phi - step });
+      return set(theta, phi - step);
     case "ArrowRight":
-      return incident({ theta, phi: phi + step });
+      return set(theta, phi + step);
     case "PageUp":
-      return incident({ theta: theta - 10, phi });
+      return set(theta - 10, phi);
     case "PageDown":
-      return incident({ theta: theta + 10, phi });
+      return set(theta + 10, phi);
     case "Home":
-      return incident({ theta: 0, phi });
+      return set(0, phi);
     case "End":
-      return incident({ theta: STEEPEST, phi });
+      return set(steepest, phi);
     default:
       return null;
   }

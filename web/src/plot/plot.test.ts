@@ -172,7 +172,7 @@ describe("pictures and tables", () => {
     expect(grid(3, { width: 10, height: 10 }, 1).cell.width).toBe(0);
   });
 
-  test("a table quotes names, keeps nine digits and leaves out what is no number", () => {
-    expect(csvText(["a,b", "c"], [[1 / 3, NaN], [Infinity, -2e-8]])).toBe('"a,b",c\r\n0.333333333,\r\nInfinity,-2e-8\r\n');
+  test("a table quotes texts, keeps nine digits and leaves out what is no number", () => {
+    expect(csvText(["a,b", "c"], [[1 / 3, NaN], ['x "y"', -2e-8]])).toBe('"a,b",c\r\n0.333333333,\r\n"x ""y""",-2e-8\r\n');
   });
 });

@@ -104,11 +104,13 @@ export function beside(canvases: HTMLCanvasElement[], ground: string): HTMLCanva
   return all;
 }
 
+export type Row = readonly (number | string)[];
+
 /** A table (RFC 4180): the names of the columns, then the rows. Numbers are written with all digits that 32 bits have. */
-export function csvText(columns: string[], rows: Iterable<readonly number[]>): string {
-  const quoted = columns.map((name) => (/[",\r\n]/.test(name) ? `"${name.replace(/"/g, '""')}"` : name));
-  const lines = [quoted.join(",")];
-  for (const row of rows) lines.push(row.map((x) => (Number.isFinite(x) ? String(Number(x.toPrecision(9))) : Number.isNaN(x) ? "" : String(x))).join(","));
+export function csvText(columns: string[], rows: Iterable<Row>): string {
+  const text = (x: string): string => (/[",\r\n]/.test(x) ? `"${x.replace(/"/g, '""')}"` : x);
+  const cell = (x: number | string): string => (typeof x === "string" ? text(x) : Number.isFinite(x) ? String(Number(x.toPrecision(9))) : Number.isNaN(x) ? "" : String(x));
+  const lines = [columns, ...rows].map((row) => row.map(cell).join(","));
   return lines.join("\r\n") + "\r\n";
 }
 

@@ -232,7 +232,7 @@ function words(all: Curve[]): string {
 }
 
 function table(): string | null {
-  const rows = curves.value.flatMap((c, index) => c.thetas.map((theta, k) => [index + 1, theta, ...c.reflected[k]!, ...c.total[k]!]));
+  const rows = curves.value.flatMap((c) => c.thetas.map((theta, k) => [c.shown.text, theta, ...c.reflected[k]!, ...c.total[k]!]));
   const columns = ["function", "theta_i_deg", "reflected_red", "reflected_green", "reflected_blue", "total_red", "total_green", "total_blue"];
   return rows.length > 0 ? csvText(columns, rows) : null;
 }

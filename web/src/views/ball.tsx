@@ -4,7 +4,7 @@ import type { JSX } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { fromDisc, nudged, onDisc } from "../plot/directions";
 import { grid, type Size } from "../plot/grid";
-import { beside, csvText, pngOfCanvas } from "../plot/save";
+import { beside, csvText, pngOfCanvas, type Row } from "../plot/save";
 import { picture } from "../plot/tone";
 import { exposure, factors, type Shown, toneMap, visible, wi } from "../state";
 import { FactorSwitches } from "./factors";
@@ -117,13 +117,13 @@ function painted(shown: Shown, answer: Answer<"ball">): { shown: Shown; width: n
 }
 
 function table(): string | null {
-  const rows: number[][] = [];
-  visible.value.forEach((f, index) => {
+  const rows: Row[] = [];
+  visible.value.forEach((f) => {
     const answer = balls.answers.value.get(String(f.id));
     if (answer === undefined) return;
     const values = answer.arrays["values"]!;
     const n = answer.request.size;
-    for (let k = 0; k < n * n; k += 1) if (!Number.isNaN(values[3 * k]!)) rows.push([index + 1, k % n, Math.floor(k / n), ...values.subarray(3 * k, 3 * k + 3)]);
+    for (let k = 0; k < n * n; k += 1) if (!Number.isNaN(values[3 * k]!)) rows.push([f.text, k % n, Math.floor(k / n), ...values.subarray(3 * k, 3 * k + 3)]);
   });
   return rows.length > 0 ? csvText(["function", "column", "row", "red", "green", "blue"], rows) : null;
 }

@@ -39,7 +39,7 @@ export function Cartesian(): JSX.Element {
 function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current: SVGSVGElement | null } }): JSX.Element {
   useDrawn("cartesian", since.value);
   const end = transmits.value ? 180 : 90;
-  const { axis, beyond } = valueAxis.value;
+  const { axis, notes } = valueAxis.value;
   const x = scaleLinear().domain([-end, end]).range([LEFT, width - RIGHT]);
   const [top, bottom] = [TOP, height - BOTTOM];
   const y = (value: number): number => bottom + (top - bottom) * axis.position(value);
@@ -116,7 +116,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
         />
       </svg>
       <Reading place="inside" />
-      {beyond !== null && <p class="view-note">up to {number(beyond)} near the horizon: cut off</p>}
+      {notes.length > 0 && <p class="view-note">{notes.join("; ")}</p>}
       <Complaints of={complaintsOf(curves)} />
     </>
   );

@@ -236,7 +236,7 @@ function Disc({ side }: { side: number }): JSX.Element {
           angles={view}
           moved={(x, y) => setWo(fromDisc("equidistant", ...at(x, y), view.phi))}
           keyed={(key, by) => {
-            const next = nudged(view, key, by);
+            const next = nudged(view, key, by, 90);
             if (next !== null) setWo(next);
             return next !== null;
           }}

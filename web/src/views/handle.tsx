@@ -39,8 +39,7 @@ export function setWi(angles: Angles): void {
 }
 
 export function setWo(angles: Angles): void {
-  const round = (x: number): number => Math.round(x * 100) / 100;
-  const next = { theta: round(angles.theta), phi: round(angles.phi) };
+  const next = incident(angles, 180);
   if (next.theta !== wo.value?.theta || next.phi !== wo.value.phi) wo.value = next;
 }
 

@@ -75,13 +75,13 @@ export class Live<K extends Operation> {
     effect(() => {
       if (this.second && !begun.value) return;
       const wishes = wanted();
+      clearTimeout(this.later);
       if (wishes !== null) untracked(() => this.take(wishes));
     });
   }
 
   private take(wishes: Wish<K>[]): void {
     const since = performance.now();
-    clearTimeout(this.later);
     if (!this.second || !pressed() || wishes.some((w) => w.fine === true) || since - this.followed > PAUSE) this.follow(wishes, since);
     else this.later = setTimeout(() => this.follow(wishes, since), PAUSE - (since - this.followed));
   }

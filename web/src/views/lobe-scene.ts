@@ -53,7 +53,6 @@ export interface Colours {
   strong: string;
   ink: string;
   light: string;
-  surface: string;
 }
 
 /** Where something is on the view, in pixels, and whether it is before the centre. */
@@ -95,6 +94,7 @@ export class LobeScene {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "low-power" });
     this.scene.add(this.stage, this.lobes, this.light, this.viewer);
     this.camera.up.set(0, 0, 1);
+    canvas.addEventListener("webglcontextrestored", () => this.invalidate());
   }
 
   dispose(): void {

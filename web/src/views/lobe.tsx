@@ -4,9 +4,9 @@ import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Angles } from "../engine/protocol";
 import { channelOf } from "../plot/colours";
-import { clamp, nudged, toVector } from "../plot/directions";
+import { nudged, STEEPEST, toVector } from "../plot/directions";
 import type { Size } from "../plot/grid";
-import { beside, csvText, pngOfCanvas } from "../plot/save";
+import { beside, csvText, pngOfCanvas, type Row } from "../plot/save";
 import { type Axis, axis, degrees, number, type Tick } from "../plot/scale";
 import { channel, cosine, scale, visible, wi, wo } from "../state";
 import { Complaints, Frame } from "./frame";
@@ -51,14 +51,13 @@ const colours = (): Colours => ({
   strong: colour("--line-strong"),
   ink: colour("--ink"),
   light: colour("--light"),
-  surface: colour("--surface"),
 });
 
 function table(): string | null {
-  const rows: number[][] = [];
-  visible.value.forEach((f, index) => {
+  const rows: Row[] = [];
+  visible.value.forEach((f) => {
     const { directions, values } = lobes.answers.value.get(String(f.id))?.arrays ?? {};
-    for (let k = 0; k + 2 < (directions?.length ?? 0); k += 3) rows.push([index + 1, ...directions!.subarray(k, k + 3), ...values!.subarray(k, k + 3)]);
+    for (let k = 0; k + 2 < (directions?.length ?? 0); k += 3) rows.push([f.text, ...directions!.subarray(k, k + 3), ...values!.subarray(k, k + 3)]);
   });
   return rows.length > 0 ? csvText(["function", "x", "y", "z", "red", "green", "blue"], rows) : null;
 }
@@ -189,7 +188,7 @@ function Labels(): JSX.Element {
         </span>
       ))}
       {spikes.map(({ look, at, share }) => (
-        <span key={at.join()} class={`lobe-label ${look}`} data-at={at.map((x) => 1.07 * x).join(" ")}>
+        <span key={`${look} ${at.join()}`} class={`lobe-label ${look}`} data-at={at.map((x) => 1.07 * x).join(" ")}>
           {number(share)}
         </span>
       ))}
@@ -233,7 +232,7 @@ function place(scene: LobeScene, overlay: HTMLElement, reach: number): void {
 function Knob({ which, scene }: { which: "light" | "viewer"; scene: { current: LobeScene | null } }): JSX.Element | null {
   const angles = which === "light" ? wi.value : wo.value;
   if (angles === null) return null;
-  const set = (next: Angles): void => (which === "light" ? setWi({ theta: clamp(next.theta, 0, 89.5), phi: next.phi }) : setWo(next));
+  const set = (next: Angles): void => (which === "light" ? setWi(next) : setWo(next));
   return (
     <div
       class={`lobe-knob ${which}`}
@@ -250,7 +249,7 @@ function Knob({ which, scene }: { which: "light" | "viewer"; scene: { current: L
         follow(event, box, (x, y) => scene.current && set(scene.current.direction(x, y, (which === "light" ? wi.value : wo.value)!)));
       }}
       onKeyDown={(event) => {
-        const next = event.ctrlKey || event.metaKey ? null : nudged(angles, event.key, { shift: event.shiftKey, alt: event.altKey });
+        const next = event.ctrlKey || event.metaKey ? null : nudged(angles, event.key, { shift: event.shiftKey, alt: event.altKey }, which === "light" ? STEEPEST : 180);
         if (next === null) return;
         event.preventDefault();
         event.stopPropagation();

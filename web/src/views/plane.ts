@@ -1,8 +1,8 @@
 /** f in the plane of incidence: the curves that the polar and the Cartesian plot share, and the axis on which all can be read. */
 import { computed, signal } from "@preact/signals";
 import { channelOf } from "../plot/colours";
-import { axis } from "../plot/scale";
-import { csvText, type Entry } from "../plot/save";
+import { axis, number } from "../plot/scale";
+import { csvText, type Entry, type Row } from "../plot/save";
 import { channel, cosine, scale, type Shown, visible, wi } from "../state";
 import { Live, seen } from "./live";
 import { colour } from "./theme";
@@ -67,12 +67,13 @@ export const transmits = computed(() => visible.value.some((f) => f.description?
 /** Directions nearer to the horizon than this make no axis longer than three times what the others need: some functions grow without bound there. */
 const GRAZING = 5;
 
-/** The axis, and what values are beyond its end. */
+/** The axis, and notes on values that are beyond its end or no finite numbers. */
 export const valueAxis = computed(() => {
-  let [least, most, grazing] = [Infinity, 0, 0];
+  let [least, most, grazing, gaps] = [Infinity, 0, 0, 0];
   for (const line of lines.value) {
     for (let k = 0; k < line.values.length; k += 1) {
       const value = line.values[k]!;
+      if (!Number.isFinite(value)) gaps += 1;
       if (!(value > 0) || value === Infinity) continue;
       grazing = Math.max(grazing, value);
       if (Math.abs(Math.abs(line.angles[k]!) - 90) < GRAZING) continue;
@@ -82,7 +83,11 @@ export const valueAxis = computed(() => {
   }
   const end = scale.value === "log" || grazing < 3 * most || most === 0 ? grazing : most;
   const made = axis(scale.value, least, end);
-  return { axis: made, beyond: grazing > made.high * (1 + 1e-6) ? grazing : null };
+  const notes = [
+    ...(grazing > made.high * (1 + 1e-6) ? [`up to ${number(grazing)} near the horizon: cut off`] : []),
+    ...(gaps > 0 ? [`${gaps} ${gaps === 1 ? "value was" : "values were"} not finite: left out`] : []),
+  ];
+  return { axis: made, notes };
 });
 
 /** The angle in the plane that the pointer is at; both plots show it. */
@@ -111,12 +116,12 @@ export function legend(): Entry[] {
 
 /** Every function's curve, one below the other: the steps differ, for each is finer where it bends. */
 export function table(): string | null {
-  const rows: number[][] = [];
+  const rows: Row[] = [];
   const columns = ["function", "theta_r_deg", "red", "green", "blue"];
-  visible.value.forEach((f, index) => {
+  visible.value.forEach((f) => {
     const answer = curves.answers.value.get(String(f.id));
     const { angles, values } = answer?.arrays ?? {};
-    for (let k = 0; k < (angles?.length ?? 0); k += 1) rows.push([index + 1, angles![k]!, values![3 * k]!, values![3 * k + 1]!, values![3 * k + 2]!]);
+    for (let k = 0; k < (angles?.length ?? 0); k += 1) rows.push([f.text, angles![k]!, values![3 * k]!, values![3 * k + 1]!, values![3 * k + 2]!]);
   });
   return rows.length > 0 ? csvText(columns, rows) : null;
 }

@@ -42,7 +42,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
   const spare = height - radius - RIM - BELOW;
   const centre: [number, number] = [width / 2, below ? height / 2 : RIM + radius + 0.4 * Math.max(0, spare)];
   const end = below ? 180 : 90;
-  const { axis, beyond } = valueAxis.value;
+  const { axis, notes } = valueAxis.value;
   const at2 = (angle: number, r: number): [number, number] => {
     const [x, y] = onPolar(angle, r);
     return [centre[0] + x, centre[1] + y];
@@ -115,7 +115,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
       <p class="view-note top">
         {quantity}
         {scale.value !== "linear" && `, radius ${scale.value === "log" ? "logarithmic" : "cube root"}`}
-        {beyond !== null && `; up to ${number(beyond)} near the horizon`}
+        {notes.map((note) => `; ${note}`)}
       </p>
       <Complaints of={complaintsOf(curves)} />
     </>

@@ -45,7 +45,10 @@ const progress = new Progress();
 const pixels = signal<Size>({ width: 0, height: 0 });
 
 effect(() => {
-  if (!begun.value || !seen.preview.value || pixels.value.width === 0) return;
+  if (!begun.value || !seen.preview.value || pixels.value.width === 0) {
+    progress.rest();
+    return;
+  }
   const point = light.value === "point";
   const motifs = visible.value.map((f) => ({
     key: `preview-${f.id}`,

@@ -70,6 +70,11 @@ export class Progress {
     this.pump();
   }
 
+  /** Begins nothing new until `follow` is called again. */
+  rest(): void {
+    this.fine = false;
+  }
+
   private remove(key: string): void {
     this.paintings.delete(key);
     engine.drop("render", `${key}/`);

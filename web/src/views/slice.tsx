@@ -5,7 +5,7 @@ import { useRef } from "preact/hooks";
 import { channelOf, ofValue } from "../plot/colours";
 import { clamp, fromHalfDifference, halfDifference } from "../plot/directions";
 import type { Size } from "../plot/grid";
-import { beside, csvText, pngOfCanvas } from "../plot/save";
+import { beside, csvText, pngOfCanvas, type Row } from "../plot/save";
 import { type Axis, axis } from "../plot/scale";
 import { channel, phiD, type Scale, visible, wi, wo } from "../state";
 import { Bar, BAR } from "./bar";
@@ -204,8 +204,8 @@ function angleApart(a: number, b: number): number {
 }
 
 function table(): string | null {
-  const rows: number[][] = [];
-  visible.value.forEach((f, index) => {
+  const rows: Row[] = [];
+  visible.value.forEach((f) => {
     const answer = slices.answers.value.get(String(f.id));
     if (answer === undefined) return;
     const { side } = answer.answer;
@@ -213,7 +213,7 @@ function table(): string | null {
     for (let k = 0; k < side * side; k += 1) {
       if (Number.isNaN(values[3 * k]!)) continue;
       const node = (n: number): number => (n * STEEPEST) / (side - 1);
-      rows.push([index + 1, node(k % side), node(side - 1 - Math.floor(k / side)), ...values.subarray(3 * k, 3 * k + 3)]);
+      rows.push([f.text, node(k % side), node(side - 1 - Math.floor(k / side)), ...values.subarray(3 * k, 3 * k + 3)]);
     }
   });
   return rows.length > 0 ? csvText(["function", "theta_h_deg", "theta_d_deg", "red", "green", "blue"], rows) : null;
