@@ -9,7 +9,7 @@ import type { Complaint, Requests } from "../engine/protocol";
 import { complaintOf } from "../functions";
 import { permanentLink } from "../persist";
 import { hand, pngOfSvg } from "../plot/save";
-import { channel, cosine, current, difference, functions, phiD, scale, visible, wi } from "../state";
+import { channel, cosine, current, difference, functions, scale, visible, wi } from "../state";
 import { Section } from "./description";
 import { Copyable, Dialog, Icon, Problem } from "./ui";
 
@@ -118,11 +118,19 @@ const PLOTS: { kind: PlotKind; name: string }[] = [
   { kind: "polar", name: "Polar" },
   { kind: "cartesian", name: "Cartesian" },
   { kind: "albedo", name: "Albedo" },
-  { kind: "slice", name: "Slice" },
+  { kind: "slice", name: "Slice, φd = 90°" },
   { kind: "lobe3d", name: "Lobe in space" },
   { kind: "sphere", name: "Lit ball" },
   { kind: "difference", name: "Difference" },
 ];
+
+/** The command's `--phi`: of the plane of incidence, towards the side where a mirror reflects; of albedos that of the light. Functions that are isotropic don't depend on it. */
+function azimuth(kind: PlotKind): number {
+  const turned = visible.value.some((f) => f.description?.declares.isotropic === false);
+  if (!turned || kind === "slice" || kind === "sphere") return 0;
+  const phi = kind === "albedo" ? wi.value.phi : wi.value.phi - 180;
+  return phi <= -180 ? phi + 360 : phi;
+}
 
 function Plots(): JSX.Element {
   const problem = useSignal<Complaint | null>(null);
@@ -139,7 +147,7 @@ function Plots(): JSX.Element {
           functions: kind === "difference" ? pair.filter((text) => text !== undefined) : visible.value.map((f) => f.text),
           kind,
           theta: [wi.value.theta],
-          phi: kind === "slice" ? phiD.value : 0,
+          phi: azimuth(kind),
           scale: scale.value,
           channel: channel.value,
           cosine: cosine.value,
