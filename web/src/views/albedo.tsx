@@ -36,7 +36,7 @@ const azimuth = (f: Shown): number => (f.description?.declares.isotropic === tru
 /** Which functions were asked for at all angles: only the coarse ones follow a slider. */
 const whole = new Map<number, string>();
 
-const albedos = new Live("albedo", "slow", () => {
+const albedos = new Live("albedo", () => {
   if (!seen.albedo.value) return null;
   const calm = settled.value;
   const batches = (f: Shown): number[][] => {

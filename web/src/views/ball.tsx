@@ -23,7 +23,7 @@ const FINEST = 420;
 /** Pixels of the screen that a ball has. */
 const side = signal(200);
 
-const balls = new Live("ball", "fast", () =>
+const balls = new Live("ball", () =>
   seen.ball.value
     ? visible.value.map((f) => ({
         key: String(f.id),

@@ -9,7 +9,7 @@ import { Live } from "./live";
 import { complaintsOf } from "./reading";
 import "./controls.css";
 
-const values = new Live("evaluate", "fast", () => {
+const values = new Live("evaluate", () => {
   const direction = wo.value;
   return direction === null ? [] : visible.value.map((f) => ({ key: String(f.id), shown: f, request: { function: f.text, wi: wi.value, wo: direction } }));
 });

@@ -33,7 +33,7 @@ const pair = computed<[Shown, Shown] | null>(() => {
   return a === undefined || b === undefined || a.id === b.id ? null : [a, b];
 });
 
-const hemispheres = new Live("hemisphere", "fast", () =>
+const hemispheres = new Live("hemisphere", () =>
   seen.difference.value
     ? (pair.value ?? []).map((f) => ({
         key: String(f.id),

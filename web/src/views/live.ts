@@ -22,10 +22,10 @@ export const seen: Record<ViewName, { value: boolean }> = {
 };
 
 /** How often what comes second follows a drag on a slow machine, milliseconds. */
-const PAUSE = 200;
+const PAUSE = 250;
 
 /** How long nothing may change until pictures are made as fine as they can be shown, milliseconds. */
-const CALM = 160;
+const CALM = 300;
 
 /** False while something is dragged or a slider moves: what takes longer than a frame is drawn coarsely then. */
 export const settled = signal(true);
@@ -43,7 +43,7 @@ export interface Wish<K extends Operation> {
   request: Requests[K]["request"];
   /** Of which function it is. */
   shown: Shown;
-  /** Whether it only makes finer what is there already: it takes long, and must not stand before the next change. */
+  /** Whether it only makes finer what is there already. */
   fine?: boolean;
 }
 
@@ -57,21 +57,20 @@ export class Live<K extends Operation> {
   readonly answers = signal<ReadonlyMap<string, Answer<K>>>(new Map());
   readonly complaints = signal<ReadonlyMap<string, Complaint>>(new Map());
   private readonly asked = new Map<string, { text: string; changed: number | undefined }>();
-  /** The newest answer of each key: coarse and fine ones come from different workers. */
-  private readonly newest = new Map<string, number>();
-  /** Whether it follows a drag less often where the plots would suffer. */
+  /** Whether it comes after the plots: from another worker, and less often where they would suffer. */
   private readonly second: boolean;
-  private order = 0;
+  private readonly how: { pool: Pool; early: boolean };
   private later = 0;
   private followed = 0;
 
   /** `wanted` reads the state; null while nobody looks, and then nothing changes. */
   constructor(
     private readonly operation: K,
-    private readonly pool: Pool,
     wanted: () => Wish<K>[] | null,
   ) {
     this.second = operation !== "curve" && operation !== "evaluate";
+    // What follows a drag goes before what only follows a slider.
+    this.how = { pool: this.second ? "slow" : "fast", early: operation !== "albedo" && operation !== "slice" };
     effect(() => {
       if (this.second && !begun.value) return;
       const wishes = wanted();
@@ -93,7 +92,7 @@ export class Live<K extends Operation> {
     if (gone.length > 0) {
       for (const key of gone) {
         this.asked.delete(key);
-        for (const pool of new Set<Pool>([this.pool, "slow"])) engine.drop(pool, `${this.operation}/${key}/`);
+        engine.drop(this.how.pool, `${this.operation}/${key}/`);
       }
       this.answers.value = without(this.answers.value, gone);
       this.complaints.value = without(this.complaints.value, gone);
@@ -110,14 +109,10 @@ export class Live<K extends Operation> {
     }
   }
 
-  private async ask({ key, request, fine }: Wish<K>, since: number): Promise<void> {
-    const order = ++this.order;
-    const place = `${this.operation}/${key}/`;
+  private async ask({ key, request }: Wish<K>, since: number): Promise<void> {
     try {
-      if (fine !== true && this.pool !== "slow") engine.drop("slow", place);
-      const reply = await engine.ask(this.operation, request, fine === true ? { pool: "slow", key: place, early: true } : { pool: this.pool, key: place });
-      if (reply === null || !this.asked.has(key) || order < (this.newest.get(key) ?? 0)) return;
-      this.newest.set(key, order);
+      const reply = await engine.ask(this.operation, request, { ...this.how, key: `${this.operation}/${key}/` });
+      if (reply === null || !this.asked.has(key)) return;
       if (this.complaints.value.has(key)) this.complaints.value = without(this.complaints.value, [key]);
       this.answers.value = new Map(this.answers.value).set(key, { ...reply, request, since });
     } catch (error) {

@@ -18,7 +18,7 @@ import { colour, theme } from "./theme";
 import { begun, drawn } from "./timings";
 import "./lobe.css";
 
-const lobes = new Live("lobe", "fast", () =>
+const lobes = new Live("lobe", () =>
   seen.lobe.value
     ? visible.value.map((f) => ({
         key: String(f.id),

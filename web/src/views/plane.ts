@@ -7,7 +7,7 @@ import { channel, cosine, scale, type Shown, visible, wi } from "../state";
 import { Live, seen } from "./live";
 import { colour } from "./theme";
 
-export const curves = new Live("curve", "fast", () =>
+export const curves = new Live("curve", () =>
   seen.polar.value || seen.cartesian.value
     ? visible.value.map((f) => ({ key: String(f.id), shown: f, request: { function: f.text, wi: wi.value, cosine: cosine.value } }))
     : null,

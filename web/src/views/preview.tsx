@@ -15,7 +15,7 @@ import { seen, settled } from "./live";
 import { type Picture, Pictures } from "./pictures";
 import { type Film, Progress } from "./progress";
 import { colour } from "./theme";
-import { begun, useDrawn } from "./timings";
+import { begun, pressed, useDrawn } from "./timings";
 
 interface Choice {
   value: string;
@@ -45,7 +45,8 @@ const progress = new Progress();
 const pixels = signal<Size>({ width: 0, height: 0 });
 
 effect(() => {
-  if (!begun.value || !seen.preview.value || pixels.value.width === 0) {
+  // On a slow machine pictures wait until nothing moves.
+  if (!begun.value || !seen.preview.value || pixels.value.width === 0 || (!settled.value && pressed())) {
     progress.rest();
     return;
   }

@@ -17,7 +17,7 @@ import { complaintsOf } from "./reading";
 import { colour } from "./theme";
 import { useDrawn } from "./timings";
 
-export const slices = new Live("slice", "slow", () =>
+export const slices = new Live("slice", () =>
   seen.slice.value || seen.difference.value ? visible.value.map((f) => ({ key: String(f.id), shown: f, request: { function: f.text, phi_d: phiD.value } })) : null,
 );
 
