@@ -37,12 +37,12 @@ export const test = base.extend<Fixtures>({
   }, { auto: true }],
 });
 
-/** Opens the page at a link and waits until its functions are understood. */
-export async function open(page: Page, link = ""): Promise<void> {
+/** Opens the page at a link and waits until its functions are understood and something is drawn. */
+export async function open(page: Page, link = "", drawn = ".view svg.plot"): Promise<void> {
   await page.goto(`/${link}`);
   // On a narrow screen the panel with the functions is behind the views.
   await expect(page.locator(".function").first()).toBeAttached();
-  await expect(page.locator(".view svg.plot").first()).toBeVisible();
+  await expect(page.locator(drawn).first()).toBeVisible();
 }
 
 /** The panel's tab for the selected function. */
