@@ -221,6 +221,12 @@ pub(crate) struct Plot {
     scale: String,
     channel: String,
     cosine: bool,
+    #[serde(default = "ninety")]
+    phi_d: f64,
+}
+
+fn ninety() -> f64 {
+    90.0
 }
 
 /// The plot that the command writes.
@@ -235,6 +241,7 @@ pub(crate) fn plot(of: Plot) -> Result<Answer, Complaint> {
         channel: of.channel.parse()?,
         scale: of.scale.parse()?,
         cosine: of.cosine,
+        phi_d_deg: of.phi_d,
         ..Options::default()
     };
     let draw = match of.kind.as_str() {

@@ -172,6 +172,8 @@ export interface Requests {
       scale: "auto" | "linear" | "cube-root" | "log";
       channel: "luminance" | "red" | "green" | "blue" | "rgb";
       cosine: boolean;
+      /** Of slices, degrees; 90 unless given. */
+      phi_d?: number;
     };
     answer: { svg: string; notes: string[] };
   };
