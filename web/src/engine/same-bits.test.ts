@@ -25,7 +25,7 @@ function hash(bytes: Uint8Array): string {
 async function library(): Promise<(asked: Asked) => Uint8Array> {
   const files = new Map(SCENE.map((name) => [name, new File(readFileSync(`../assets/preview/${name}`))]));
   const nothing = (): ConsoleStdout => ConsoleStdout.lineBuffered(() => undefined);
-  const wasi = new WASI(["gonio"], [], [new OpenFile(new File([])), nothing(), nothing(), new PreopenDirectory("files", files)]);
+  const wasi = new WASI(["gonio"], [], [new OpenFile(new File([])), nothing(), nothing(), new PreopenDirectory("files", files)], { debug: false });
   const module = await WebAssembly.compile(readFileSync(MODULE));
   const instance = await WebAssembly.instantiate(module, { wasi_snapshot_preview1: wasi.wasiImport as WebAssembly.ModuleImports });
   const exports = instance.exports as unknown as {
