@@ -47,14 +47,20 @@ const MORE: RGB[] = [
   [103, 0, 31],
 ];
 
-/** A difference from −1 to 1: blue for less, white for none, red for more (after ColorBrewer's RdBu, Harrower & Brewer 2003). */
-export function ofDifference(share: number): RGB {
-  if (!Number.isFinite(share)) return NOT_FINITE;
+function mixed(share: number): RGB {
   const stops = share < 0 ? LESS : MORE;
-  const at = 2 * Math.min(Math.abs(share), 1);
+  const at = 2 * Math.abs(share);
   const k = at < 1 ? 0 : 1;
   const mix = (c: number): number => Math.round(stops[k]![c]! + (at - k) * (stops[k + 1]![c]! - stops[k]![c]!));
   return [mix(0), mix(1), mix(2)];
+}
+/** In steps that nobody sees: a picture has tens of thousands of them. */
+const DIFFERENCES: RGB[] = Array.from({ length: 513 }, (_, k) => mixed(k / 256 - 1));
+
+/** A difference from −1 to 1: blue for less, white for none, red for more (after ColorBrewer's RdBu, Harrower & Brewer 2003). */
+export function ofDifference(share: number): RGB {
+  if (!Number.isFinite(share)) return NOT_FINITE;
+  return DIFFERENCES[Math.round(256 * (Math.min(Math.max(share, -1), 1) + 1))]!;
 }
 
 /** Weights of Rec. 709's primaries in the luminance. */

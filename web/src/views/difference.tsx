@@ -2,6 +2,7 @@
 import { computed } from "@preact/signals";
 import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
+import type { Operation } from "../engine/protocol";
 import { channelOf, ofDifference } from "../plot/colours";
 import { clamp, fromDisc, fromHalfDifference, nudged, onDisc, STEEPEST } from "../plot/directions";
 import type { Size } from "../plot/grid";
@@ -12,7 +13,7 @@ import { Bar, BAR } from "./bar";
 import { Complaints, Frame } from "./frame";
 import { Handle, setWi, setWo } from "./handle";
 import { label } from "./label";
-import { Live, seen, settled } from "./live";
+import { type Answer, Live, seen, settled } from "./live";
 import { Pixels } from "./pictures";
 import { complaintsOf } from "./reading";
 import { slices } from "./slice";
@@ -50,7 +51,6 @@ interface Field {
   values: Float32Array;
   /** Index of the largest; −1 where there is none. */
   largest: number;
-  paint: (out: Uint8ClampedArray) => void;
 }
 
 function field(a: Float32Array, b: Float32Array, side: number): Field {
@@ -62,32 +62,46 @@ function field(a: Float32Array, b: Float32Array, side: number): Field {
     values[k] = most === 0 ? 0 : (y - x) / most;
     if (Number.isFinite(values[k]!) && (largest < 0 || Math.abs(values[k]!) > Math.abs(values[largest]!))) largest = k;
   }
-  return { side, values, largest, paint: () => undefined };
+  return { side, values, largest };
 }
 
-const fields = computed<{ sphere: Field | null; slice: Field | null; end: number; since: number }>(() => {
-  const both = pair.value;
-  const [a, b] = (both ?? []).map((f) => hemispheres.answers.value.get(String(f.id)));
-  const [c, d] = (both ?? []).map((f) => slices.answers.value.get(String(f.id)));
-  const sphere = a && b && a.request.size === b.request.size ? field(a.arrays["values"]!, b.arrays["values"]!, a.request.size) : null;
-  const slice = c && d && c.request.phi_d === d.request.phi_d ? field(c.arrays["values"]!, d.arrays["values"]!, c.answer.side) : null;
-  const most = Math.max(0, ...[sphere, slice].map((f) => (f === null || f.largest < 0 ? 0 : Math.abs(f.values[f.largest]!))));
-  const end = most === 0 ? 1 : Math.min(1, roundUp(most));
-  for (const f of [sphere, slice]) {
-    if (f === null) continue;
-    f.paint = (out) => {
-      for (let k = 0; k < f.values.length; k += 1) {
-        if (Number.isNaN(f.values[k]!)) continue;
-        const [red, green, blue] = ofDifference(f.values[k]! / end);
-        out[4 * k] = red;
-        out[4 * k + 1] = green;
-        out[4 * k + 2] = blue;
-        out[4 * k + 3] = 255;
-      }
-    };
-  }
-  return { sphere, slice, end, since: Math.max(0, a?.since ?? 0, b?.since ?? 0) };
+const answers = <K extends Operation>(live: Live<K>): (Answer<K> | undefined)[] => (pair.value ?? []).map((f) => live.answers.value.get(String(f.id)));
+
+const sphere = computed<Field | null>(() => {
+  const [a, b] = answers(hemispheres);
+  return a && b && a.request.size === b.request.size ? field(a.arrays["values"]!, b.arrays["values"]!, a.request.size) : null;
 });
+
+const slice = computed<Field | null>(() => {
+  const [a, b] = answers(slices);
+  return a && b && a.request.phi_d === b.request.phi_d ? field(a.arrays["values"]!, b.arrays["values"]!, a.answer.side) : null;
+});
+
+/** The difference at the end of the scale. */
+const end = computed(() => {
+  const most = Math.max(0, ...[sphere.value, slice.value].map((f) => (f === null || f.largest < 0 ? 0 : Math.abs(f.values[f.largest]!))));
+  return most === 0 ? 1 : Math.min(1, roundUp(most));
+});
+
+const painters = new WeakMap<Field, { end: number; paint: (out: Uint8ClampedArray) => void }>();
+
+function painted(of: Field): (out: Uint8ClampedArray) => void {
+  const last = end.value;
+  const before = painters.get(of);
+  if (before?.end === last) return before.paint;
+  const paint = (out: Uint8ClampedArray): void => {
+    for (let k = 0; k < of.values.length; k += 1) {
+      if (Number.isNaN(of.values[k]!)) continue;
+      const [red, green, blue] = ofDifference(of.values[k]! / last);
+      out[4 * k] = red;
+      out[4 * k + 1] = green;
+      out[4 * k + 2] = blue;
+      out[4 * k + 3] = 255;
+    }
+  };
+  painters.set(of, { end: last, paint });
+  return paint;
+}
 
 export function Difference(): JSX.Element {
   const body = useRef<HTMLDivElement>(null);
@@ -136,23 +150,22 @@ function Choice({ pair: [a, b] }: { pair: [Shown, Shown] }): JSX.Element {
 }
 
 function Drawing({ size, pair: [a, b] }: { size: Size; pair: [Shown, Shown] }): JSX.Element {
-  const { sphere, slice, end, since } = fields.value;
-  useDrawn("difference", since);
+  useDrawn("difference", Math.max(0, ...answers(hemispheres).map((x) => x?.since ?? 0)));
   const below = 40;
   const upright = size.height > 1.3 * size.width;
   const side = Math.floor(Math.max(40, upright ? Math.min(size.width - BAR - 24, (size.height - 2 * below - 40) / 2) : Math.min((size.width - BAR - 36) / 2, size.height - below - 32)));
   const colourAt = (p: number): [number, number, number] => ofDifference(2 * p - 1);
   return (
     <div class={`difference${upright ? " upright" : ""}`}>
-      {sphere !== null && (
-        <Panel name="Reflection" field={sphere} side={side} place={placeOnDisc(sphere)} over={<Disc side={side} />} words={`Difference of ${b.text} from ${a.text} over the directions of reflection`} />
+      {sphere.value !== null && (
+        <Panel name="Reflection" field={sphere.value} side={side} place={placeOnDisc(sphere.value)} over={<Disc side={side} />} words={`Difference of ${b.text} from ${a.text} over the directions of reflection`} />
       )}
-      {slice !== null && (
-        <Panel name={`Slice, φd = ${phiD.value}°`} field={slice} side={side} place={placeOnSlice(slice)} over={<Edge side={side} slice={slice} />} words={`Difference of ${b.text} from ${a.text} over the slice`} />
+      {slice.value !== null && (
+        <Panel name={`Slice, φd = ${phiD.value}°`} field={slice.value} side={side} place={placeOnSlice(slice.value)} over={<Edge side={side} field={slice.value} />} words={`Difference of ${b.text} from ${a.text} over the slice`} />
       )}
-      {(sphere ?? slice) !== null && (
+      {(sphere.value ?? slice.value) !== null && (
         <div class="bar-place" style={{ top: "26px" }}>
-          <Bar height={Math.max(60, Math.min(side, size.height - 80))} name="differences" ticks={[-1, -0.5, 0, 0.5, 1].map((t) => ({ position: (t + 1) / 2, label: percent(t * end) }))} colourAt={colourAt} />
+          <Bar height={Math.max(60, Math.min(side, size.height - 80))} name="differences" ticks={[-1, -0.5, 0, 0.5, 1].map((t) => ({ position: (t + 1) / 2, label: percent(t * end.value) }))} colourAt={colourAt} />
         </div>
       )}
     </div>
@@ -166,12 +179,13 @@ interface Place {
   go: () => void;
 }
 
-function Panel({ name, field: { side, paint, largest, values }, side: shown, place, over, words }: { name: string; field: Field; side: number; place: Place | null; over: JSX.Element; words: string }): JSX.Element {
+function Panel({ name, field, side: shown, place, over, words }: { name: string; field: Field; side: number; place: Place | null; over: JSX.Element; words: string }): JSX.Element {
+  const { side, largest, values } = field;
   return (
     <figure class="picture">
       <figcaption class="picture-name">{name}</figcaption>
       <div class="picture-place" style={{ width: `${shown}px`, height: `${shown}px` }}>
-        <Pixels picture={{ width: side, height: side, paint, words }} cell={{ width: shown, height: shown }} />
+        <Pixels picture={{ width: side, height: side, paint: painted(field), words }} cell={{ width: shown, height: shown }} />
         {over}
       </div>
       {place !== null && (
@@ -257,7 +271,7 @@ function Disc({ side }: { side: number }): JSX.Element {
   );
 }
 
-function Edge({ side, slice }: { side: number; slice: Field }): JSX.Element {
+function Edge({ side, field }: { side: number; field: Field }): JSX.Element {
   return (
     <svg
       class="over plot"
@@ -267,9 +281,9 @@ function Edge({ side, slice }: { side: number; slice: Field }): JSX.Element {
       aria-hidden="true"
       onClick={(event) => {
         const box = event.currentTarget.getBoundingClientRect();
-        const node = (share: number): number => Math.round(clamp(share, 0, 1) * (slice.side - 1));
-        const index = node((event.clientY - box.top) / side) * slice.side + node((event.clientX - box.left) / side);
-        placeOnSlice({ ...slice, largest: index })?.go();
+        const node = (share: number): number => Math.round(clamp(share, 0, 1) * (field.side - 1));
+        const index = node((event.clientY - box.top) / side) * field.side + node((event.clientX - box.left) / side);
+        placeOnSlice({ ...field, largest: index })?.go();
       }}
     >
       <rect class="rim" x={0.5} y={0.5} width={side - 1} height={side - 1} />
@@ -284,14 +298,14 @@ function Edge({ side, slice }: { side: number; slice: Field }): JSX.Element {
 }
 
 function table(): string | null {
-  const { sphere } = fields.value;
-  if (sphere === null) return null;
+  if (sphere.value === null) return null;
+  const { side, values } = sphere.value;
   const rows: number[][] = [];
-  for (let k = 0; k < sphere.values.length; k += 1) {
-    if (Number.isNaN(sphere.values[k]!)) continue;
-    const at = (n: number): number => (2 * (n + 0.5)) / sphere.side - 1;
-    const { theta, phi } = fromDisc("equidistant", at(k % sphere.side), -at(Math.floor(k / sphere.side)));
-    rows.push([theta, phi, sphere.values[k]!]);
+  for (let k = 0; k < values.length; k += 1) {
+    if (Number.isNaN(values[k]!)) continue;
+    const at = (n: number): number => (2 * (n + 0.5)) / side - 1;
+    const { theta, phi } = fromDisc("equidistant", at(k % side), -at(Math.floor(k / side)));
+    rows.push([theta, phi, values[k]!]);
   }
   return csvText(["theta_r_deg", "phi_r_deg", "relative_difference"], rows);
 }

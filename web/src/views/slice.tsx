@@ -7,7 +7,7 @@ import { clamp, fromHalfDifference, halfDifference } from "../plot/directions";
 import type { Size } from "../plot/grid";
 import { beside, csvText, pngOfCanvas, type Row } from "../plot/save";
 import { type Axis, axis } from "../plot/scale";
-import { channel, phiD, type Scale, visible, wi, wo } from "../state";
+import { type Channel, channel, phiD, type Scale, visible, wi, wo } from "../state";
 import { Bar, BAR } from "./bar";
 import { Complaints, Frame } from "./frame";
 import { follow, setWi, setWo } from "./handle";
@@ -32,16 +32,23 @@ const STEEPEST = 89.9;
 /** The share of the values that the scale holds; the few above it, at grazing angles, have the colour of its end. */
 const HELD = 0.98;
 
+/** Each few of the values, without what is 0 or not finite, in order: enough for the ends of a scale. */
+function positive(values: Float32Array, which: Channel): Float32Array {
+  const numbers = new Float32Array(Math.ceil(values.length / STRIDE));
+  let count = 0;
+  for (let k = 0; k + 2 < values.length; k += STRIDE) {
+    const value = which === "rgb" ? Math.max(values[k]!, values[k + 1]!, values[k + 2]!) : channelOf(which, values, k);
+    if (value > 0 && value < Infinity) numbers[count++] = value;
+  }
+  return numbers.subarray(0, count).sort();
+}
+/** Of 3 a value; it shares no factor with the slice's side, so every column is looked at. */
+const STRIDE = 15;
+
 const shownAxis = computed<Axis>(() => {
   let [least, most] = [Infinity, 0];
   for (const { arrays } of slices.answers.value.values()) {
-    const values = arrays["values"]!;
-    const numbers: number[] = [];
-    for (let k = 0; k + 2 < values.length; k += 3) {
-      const value = channel.value === "rgb" ? Math.max(values[k]!, values[k + 1]!, values[k + 2]!) : channelOf(channel.value, values, k);
-      if (value > 0 && value < Infinity) numbers.push(value);
-    }
-    numbers.sort((a, b) => a - b);
+    const numbers = positive(arrays["values"]!, channel.value);
     if (numbers.length === 0) continue;
     least = Math.min(least, numbers[0]!);
     most = Math.max(most, numbers[Math.floor(HELD * (numbers.length - 1))]!);
