@@ -110,7 +110,8 @@ export function Difference(): JSX.Element {
       view="difference"
       title="Difference"
       about="(f₂ − f₁) / max(|f₁|, |f₂|): red where the second function is larger, blue where it is smaller. Left: all directions of reflection, seen from above, the normal in the middle. Right: the slice of half and difference angles. Click to look at a direction."
-      controls={pair.value !== null && visible.value.length > 2 && <Choice pair={pair.value} />}
+      many
+      controls={pair.value !== null && <Choice pair={pair.value} />}
       saves={{
         png: () => {
           const canvases = [...(body.current?.querySelectorAll<HTMLCanvasElement>(".picture-place canvas") ?? [])];
