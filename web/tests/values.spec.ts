@@ -38,11 +38,11 @@ test("the curves' table is the command's function, at every angle", async ({ pag
   const text = await (await file.createReadStream()).toArray().then((parts) => Buffer.concat(parts as Buffer[]).toString());
   const [head, ...lines] = text.trim().split("\r\n");
   expect(head).toBe("function,theta_r_deg,red,green,blue");
-  const rows = lines.map((line) => line.split(",").map(Number));
+  // The function's text may have commas of its own, in quotes.
+  const rows = lines.map((line) => line.split(",").slice(-4).map(Number));
   expect(rows.length).toBeGreaterThan(100);
   for (const at of [0.15, 0.5, 0.72, 0.9]) {
-    const [number, theta, ...rgb] = rows[Math.floor(at * rows.length)]!;
-    expect(number).toBe(1);
+    const [theta, ...rgb] = rows[Math.floor(at * rows.length)]!;
     const exact = evaluated(f, { theta: 40, phi: 180 }, { theta: Math.abs(theta!), phi: theta! < 0 ? 180 : 0 });
     // The angles and values of curves are 32-bit numbers.
     exact.f_per_sr.forEach((x, k) => expect(Math.abs(rgb[k]! - x)).toBeLessThan(1e-5 * x));
