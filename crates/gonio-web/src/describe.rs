@@ -116,6 +116,7 @@ fn description(text: &str) -> Result<Answer, Complaint> {
                 "toml": in_toml(&written),
                 "command": format!("gonio brdf check {}", quoted(&written)),
                 "rust": in_rust(&written),
+                "python": in_python(&written),
             },
         }),
         Vec::new(),
@@ -131,6 +132,13 @@ fn in_toml(text: &str) -> String {
 fn in_rust(text: &str) -> String {
     format!(
         "use gonio::brdf::{{Brdf, Model, ModelSpec}};\n\nlet model: Model<f64, 3> = ModelSpec::open({text:?})?.build()?;\n"
+    )
+}
+
+/// What runs the command from Python and reads its answer. The text between quotes is one that JSON, Rust and Python write alike.
+fn in_python(text: &str) -> String {
+    format!(
+        "import json, subprocess\n\nmodel = {text:?}\ncommand = [\"gonio\", \"brdf\", \"eval\", model, \"--wi\", \"45,180\", \"--wo\", \"45,0\", \"--json\"]\nvalue = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)\nprint(value[\"f_per_sr\"])\n"
     )
 }
 

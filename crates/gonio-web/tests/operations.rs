@@ -90,6 +90,32 @@ fn parameters_are_set_and_taken_away() {
     assert_eq!(complaint["help"], "did you mean `roughness`?");
 }
 
+/// What is taken away is read by those that it is for.
+#[test]
+fn descriptions_go_elsewhere() {
+    let function = "sum(lambertian:0.3, ggx:roughness=0.5)";
+    let (told, _) = answer("describe", json!({ "function": function }));
+    let scene = format!(
+        "[environment]\nuniform = 1\n{}[[shape]]\nkind = \"sphere\"\nmaterial = \"object\"\n",
+        told["as"]["toml"].as_str().unwrap()
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    std::fs::write(&path, scene).unwrap();
+    let scene = gonio_scene::Scene::load(&path, &Default::default()).unwrap();
+    let material = scene.materials.iter().find(|m| m.name == "object");
+    assert_eq!(material.unwrap().even_model().unwrap().info().name, "sum");
+
+    let command = told["as"]["command"].as_str().unwrap();
+    assert!(command.ends_with(&format!("'{}'", told["text"].as_str().unwrap())));
+    assert!(
+        told["as"]["python"]
+            .as_str()
+            .unwrap()
+            .contains("\"--json\"")
+    );
+}
+
 #[test]
 fn values_are_those_of_the_library() {
     let request =

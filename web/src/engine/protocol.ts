@@ -69,7 +69,7 @@ export interface Description {
   recordable: boolean;
   warnings: string[];
   /** The same function for other places. */
-  as: { toml: string; command: string; rust: string };
+  as: { toml: string; command: string; rust: string; python: string };
 }
 
 /** The value for one pair of directions, in double precision: what `gonio brdf eval --json` prints, under the same keys. */

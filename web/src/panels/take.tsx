@@ -9,7 +9,7 @@ import type { Complaint, Requests } from "../engine/protocol";
 import { complaintOf } from "../functions";
 import { permanentLink } from "../persist";
 import { hand, pngOfSvg } from "../plot/save";
-import { channel, cosine, current, difference, functions, scale, visible, wi } from "../state";
+import { channel, cosine, current, difference, functions, phiD, scale, visible, wi } from "../state";
 import { Section } from "./description";
 import { Copyable, Dialog, Icon, Problem } from "./ui";
 
@@ -29,6 +29,7 @@ export function Take(): JSX.Element | null {
           <Copyable label="Command line" text={as.command} />
           <Copyable label="Scene file (TOML)" text={as.toml} />
           <Copyable label="Rust" text={as.rust} />
+          <Copyable label="Python" text={as.python} />
         </Section>
       ) : null}
       {shown?.description != null ? <ShaderCode key={shown.id} text={shown.text} recordable={shown.description.recordable} /> : null}
@@ -118,7 +119,7 @@ const PLOTS: { kind: PlotKind; name: string }[] = [
   { kind: "polar", name: "Polar" },
   { kind: "cartesian", name: "Cartesian" },
   { kind: "albedo", name: "Albedo" },
-  { kind: "slice", name: "Slice, φd = 90°" },
+  { kind: "slice", name: "Slice" },
   { kind: "lobe3d", name: "Lobe in space" },
   { kind: "sphere", name: "Lit ball" },
   { kind: "difference", name: "Difference" },
@@ -148,6 +149,7 @@ function Plots(): JSX.Element {
           kind,
           theta: [wi.value.theta],
           phi: azimuth(kind),
+          phi_d: phiD.value,
           scale: scale.value,
           channel: channel.value,
           cosine: cosine.value,
@@ -169,7 +171,7 @@ function Plots(): JSX.Element {
       <ul class="plots">
         {PLOTS.map(({ kind, name }) => (
           <li key={kind}>
-            <span>{name}</span>
+            <span>{kind === "slice" ? `${name}, φd = ${phiD.value}°` : name}</span>
             {(["svg", "png"] as const).map((as) => (
               <button
                 key={as}
