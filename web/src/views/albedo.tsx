@@ -33,6 +33,9 @@ const BATCHES = [
 /** The azimuth matters for what isn't isotropic, and only for that. */
 const azimuth = (f: Shown): number => (f.description?.declares.isotropic === true ? 0 : wi.value.phi);
 
+/** The batch of the direction of incidence alone. */
+const HERE = "here";
+
 /** Which functions were asked for at all angles: only the coarse ones follow a slider. */
 const whole = new Map<number, string>();
 
@@ -44,9 +47,12 @@ const albedos = new Live("albedo", () => {
     if (calm) whole.set(f.id, subject);
     return whole.get(f.id) === subject ? BATCHES : BATCHES.slice(0, 1);
   };
-  const wishes = visible.value.map((f) => batches(f).map((thetas, k) => ({ key: `${f.id}/${k}`, shown: f, request: { function: f.text, thetas, phi: azimuth(f) } })));
+  const wish = (f: Shown, name: string, thetas: number[]) => ({ key: `${f.id}/${name}`, shown: f, request: { function: f.text, thetas, phi: azimuth(f) } });
+  const wishes = visible.value.map((f) => batches(f).map((thetas, k) => wish(f, String(k), thetas)));
+  // The value that is written must be that of its angle, not one between two others.
+  const exact = calm ? visible.value.map((f) => wish(f, HERE, [wi.value.theta])) : [];
   // The coarse ones of all functions first.
-  return BATCHES.flatMap((_, k) => wishes.flatMap((w) => w[k] ?? []));
+  return [...BATCHES.flatMap((_, k) => wishes.flatMap((w) => w[k] ?? [])), ...exact];
 });
 
 interface Curve {
@@ -61,7 +67,7 @@ interface Curve {
 /** The curves; what was answered for a function that has changed since is kept until the new one's coarse angles are there. */
 const curves = computed<Curve[]>(() =>
   visible.value.flatMap((shown) => {
-    const answers = BATCHES.map((_, k) => albedos.answers.value.get(`${shown.id}/${k}`)).filter((a) => a !== undefined);
+    const answers = [HERE, ...BATCHES.keys()].map((name) => albedos.answers.value.get(`${shown.id}/${name}`)).filter((a) => a !== undefined);
     const like = (text: string, phi: number): Answer<"albedo">[] => answers.filter((a) => a.request.function === text && a.request.phi === phi);
     const ofNow = like(shown.text, azimuth(shown));
     const before = answers.at(-1)?.request;

@@ -20,7 +20,7 @@ export function Reading({ place }: { place: "corner" | "inside" }): JSX.Element 
             .filter((line) => line.shown.id === f.id)
             .map((line) => (
               <b key={line.key} class={line.look}>
-                {Number.isFinite(at(line, angle)) ? number(at(line, angle), 4) : "–"}
+                {Number.isFinite(at(line, angle)) ? number(at(line, angle)) : "–"}
               </b>
             ))}
         </span>
