@@ -2,6 +2,7 @@ import { describe, expect, test } from "vitest";
 import { channelOf, magma, NOT_FINITE, ofDifference, ofValue } from "./colours";
 import * as directions from "./directions";
 import { grid } from "./grid";
+import { continueRim } from "./rim";
 import { csvText } from "./save";
 import { aligned, axis, degrees, number, roundUp } from "./scale";
 import { picture, shown, srgb8 } from "./tone";
@@ -163,6 +164,20 @@ describe("pictures and tables", () => {
     const out = new Uint8ClampedArray(8);
     picture(out, [NaN, NaN, NaN, Infinity, Infinity, Infinity], 1, "srgb");
     expect([...out]).toEqual([0, 0, 0, 0, 255, 255, 255, 255]);
+  });
+
+  test("a disc goes on beyond its rim, and no further", () => {
+    const side = 16;
+    const out = new Uint8ClampedArray(4 * side * side);
+    for (let k = 0; k < side * side; k += 1) {
+      const [x, y] = [(k % side) - 7.5, Math.floor(k / side) - 7.5];
+      if (Math.hypot(x, y) <= 8) out.set([x < 0 ? 200 : 10, 0, 0, 255], 4 * k);
+    }
+    const inside = out.slice(4 * (8 * side + 8), 4 * (8 * side + 8) + 4);
+    continueRim(out, side);
+    expect([...out.slice(4 * (side + 1), 4 * (side + 1) + 4)]).toEqual([200, 0, 0, 255]);
+    expect(out[3]).toBe(0);
+    expect(out.slice(4 * (8 * side + 8), 4 * (8 * side + 8) + 4)).toEqual(inside);
   });
 
   test("a grid makes its cells as large as can be", () => {

@@ -4,9 +4,10 @@ import type { JSX } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { fromDisc, nudged, onDisc } from "../plot/directions";
 import { grid, type Size } from "../plot/grid";
+import { continueRim } from "../plot/rim";
 import { beside, csvText, pngOfCanvas, type Row } from "../plot/save";
 import { picture } from "../plot/tone";
-import { exposure, factors, type Shown, toneMap, visible, wi } from "../state";
+import { exposure, factors, type Shown, type ToneMap, toneMap, visible, wi } from "../state";
 import { FactorSwitches } from "./factors";
 import { Complaints, Frame } from "./frame";
 import { Handle, setWi } from "./handle";
@@ -76,6 +77,7 @@ function Balls({ size }: { size: Size }): JSX.Element {
     <Pictures
       size={size}
       aspect={1}
+      round
       pictures={pictures}
       over={(place) => {
         const half = place.width / 2;
@@ -101,6 +103,11 @@ function Balls({ size }: { size: Size }): JSX.Element {
   );
 }
 
+function paintBall(out: Uint8ClampedArray, { arrays, request }: Answer<"ball">, factor: number, curve: ToneMap): void {
+  picture(out, arrays["values"]!, factor, curve);
+  continueRim(out, request.size);
+}
+
 /** The last painter of each answer: a picture is painted anew only where it changed. */
 const painters = new WeakMap<Answer<"ball">, { key: string; paint: (out: Uint8ClampedArray) => void }>();
 
@@ -109,7 +116,7 @@ function painted(shown: Shown, answer: Answer<"ball">): { shown: Shown; width: n
   let painter = painters.get(answer);
   if (painter?.key !== key) {
     const [factor, curve] = [2 ** exposure.value, toneMap.value];
-    painter = { key, paint: (out) => picture(out, answer.arrays["values"]!, factor, curve) };
+    painter = { key, paint: (out) => paintBall(out, answer, factor, curve) };
     painters.set(answer, painter);
   }
   const { size } = answer.request;

@@ -6,6 +6,7 @@ import type { Operation } from "../engine/protocol";
 import { channelOf, ofDifference } from "../plot/colours";
 import { clamp, fromDisc, fromHalfDifference, nudged, onDisc, STEEPEST } from "../plot/directions";
 import type { Size } from "../plot/grid";
+import { continueRim } from "../plot/rim";
 import { beside, csvText, pngOfCanvas } from "../plot/save";
 import { degrees, number, roundUp } from "../plot/scale";
 import { channel, cosine, difference, phiD, type Shown, visible, wi, wo } from "../state";
@@ -98,6 +99,7 @@ function painted(of: Field): (out: Uint8ClampedArray) => void {
       out[4 * k + 2] = blue;
       out[4 * k + 3] = 255;
     }
+    if (of === sphere.peek()) continueRim(out, of.side);
   };
   painters.set(of, { end: last, paint });
   return paint;
@@ -159,7 +161,7 @@ function Drawing({ size, pair: [a, b] }: { size: Size; pair: [Shown, Shown] }): 
   return (
     <div class={`difference${upright ? " upright" : ""}`}>
       {sphere.value !== null && (
-        <Panel name="Reflection" field={sphere.value} side={side} place={placeOnDisc(sphere.value)} over={<Disc side={side} />} words={`Difference of ${b.text} from ${a.text} over the directions of reflection`} />
+        <Panel name="Reflection" round field={sphere.value} side={side} place={placeOnDisc(sphere.value)} over={<Disc side={side} />} words={`Difference of ${b.text} from ${a.text} over the directions of reflection`} />
       )}
       {slice.value !== null && (
         <Panel name={`Slice, φd = ${phiD.value}°`} field={slice.value} side={side} place={placeOnSlice(slice.value)} over={<Edge side={side} field={slice.value} />} words={`Difference of ${b.text} from ${a.text} over the slice`} />
@@ -180,12 +182,22 @@ interface Place {
   go: () => void;
 }
 
-function Panel({ name, field, side: shown, place, over, words }: { name: string; field: Field; side: number; place: Place | null; over: JSX.Element; words: string }): JSX.Element {
+interface PanelProps {
+  name: string;
+  field: Field;
+  side: number;
+  place: Place | null;
+  over: JSX.Element;
+  words: string;
+  round?: boolean;
+}
+
+function Panel({ name, field, side: shown, place, over, words, round = false }: PanelProps): JSX.Element {
   const { side, largest, values } = field;
   return (
     <figure class="picture">
       <figcaption class="picture-name">{name}</figcaption>
-      <div class="picture-place" style={{ width: `${shown}px`, height: `${shown}px` }}>
+      <div class={round ? "picture-place round" : "picture-place"} style={{ width: `${shown}px`, height: `${shown}px` }}>
         <Pixels picture={{ width: side, height: side, paint: painted(field), words }} cell={{ width: shown, height: shown }} />
         {over}
       </div>
@@ -243,7 +255,7 @@ function Disc({ side }: { side: number }): JSX.Element {
       {[30, 60].map((t) => (
         <circle key={t} class="over-grid" cx={half} cy={half} r={(t / 90) * half} />
       ))}
-      <circle class="over-rim" cx={half} cy={half} r={half - 1} />
+      <circle class="rim" cx={half} cy={half} r={half - 0.5} />
       {view !== null && (
         <Handle
           which="viewer"

@@ -25,9 +25,11 @@ export interface PicturesProps {
   over?: (cell: Size, left: boolean) => ComponentChildren;
   /** Room below each, pixels. */
   foot?: number;
+  /** Whether they are discs. */
+  round?: boolean;
 }
 
-export function Pictures({ size, aspect, pictures, over, foot = 0 }: PicturesProps): JSX.Element {
+export function Pictures({ size, aspect, pictures, over, foot = 0, round = false }: PicturesProps): JSX.Element {
   const { columns, cell } = grid(pictures.length, size, aspect, foot);
   return (
     <div class="pictures" style={{ gridTemplateColumns: `repeat(${columns}, ${cell.width}px)` }}>
@@ -35,7 +37,7 @@ export function Pictures({ size, aspect, pictures, over, foot = 0 }: PicturesPro
         pictures.map((picture, k) => (
           <figure key={picture.shown.id} class="picture" style={{ marginBottom: `${foot}px` }}>
             {pictures.length > 1 && <Name shown={picture.shown} width={cell.width} />}
-            <div class="picture-place" style={{ width: `${cell.width}px`, height: `${cell.height}px` }}>
+            <div class={round ? "picture-place round" : "picture-place"} style={{ width: `${cell.width}px`, height: `${cell.height}px` }}>
               <Pixels picture={picture} cell={cell} />
               {over?.(cell, k % columns === 0)}
             </div>
