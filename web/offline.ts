@@ -1,6 +1,6 @@
 /** Builds the service worker, which knows every file of the site by a hash of what it holds. */
 import { createHash } from "node:crypto";
-import { readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { readdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { build, type Plugin, type ResolvedConfig } from "vite";
 
@@ -19,11 +19,10 @@ export function offline(): Plugin {
       async handler() {
         const folder = resolve(config.root, config.build.outDir);
         const files: Record<string, string> = {};
-        for (const entry of readdirSync(folder, { recursive: true, withFileTypes: true })) {
-          if (!entry.isFile()) continue;
-          const path = join(entry.parentPath, entry.name);
-          const name = path.slice(folder.length + 1).replaceAll("\\", "/");
-          if (name !== WORKER) files[name] = createHash("sha256").update(readFileSync(path)).digest("hex").slice(0, 16);
+        for (const entry of readdirSync(folder, { recursive: true, encoding: "utf8" })) {
+          const path = join(folder, entry);
+          const name = entry.replaceAll("\\", "/");
+          if (statSync(path).isFile() && name !== WORKER) files[name] = createHash("sha256").update(readFileSync(path)).digest("hex").slice(0, 16);
         }
         const built = await build({
           configFile: false,
