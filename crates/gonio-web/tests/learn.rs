@@ -1,5 +1,7 @@
 //! The figures of the page Learn, held to what the theory says of each.
 
+#![allow(clippy::unwrap_used)]
+
 use gonio_web::{Answer, call};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_1_PI, PI};

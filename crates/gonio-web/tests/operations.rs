@@ -1,5 +1,7 @@
 //! Every operation as a page asks for it: answers are the library's own, and what can't be answered is one clear error.
 
+#![allow(clippy::unwrap_used)]
+
 use gonio_web::{Answer, call};
 use serde_json::{Value, json};
 use std::f64::consts::PI;

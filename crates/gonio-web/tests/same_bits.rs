@@ -1,6 +1,8 @@
 //! Answers in a browser are those of the native library, to the last bit: hashes of them that `web/src/engine/same-bits.test.ts` compares with
 //! what WebAssembly answers. `GONIO_UPDATE=1` writes them anew.
 
+#![allow(clippy::unwrap_used)]
+
 use gonio_web::call;
 use serde_json::{Value, json};
 use std::path::Path;
