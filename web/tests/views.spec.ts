@@ -51,7 +51,7 @@ test("the keys move it in every view that has its handle", async ({ page }) => {
 });
 
 test("a touch moves it too", async ({ page }) => {
-  await open(page, "#f=ggx:roughness=0.4&wi=45,180");
+  await open(page, "#f=ggx:roughness=0.4&wi=45,180&large=polar");
   const handle = view(page, "polar").getByRole("slider", { name: "Direction of incidence" });
   const box = (await handle.boundingBox())!;
   const client = await page.context().newCDPSession(page);
@@ -64,7 +64,7 @@ test("a touch moves it too", async ({ page }) => {
 });
 
 test("scales, the cosine, exposure and the tone curve are set for all views", async ({ page }) => {
-  await open(page, "#f=ggx:roughness=0.4");
+  await open(page, "#f=ggx:roughness=0.4&large=polar");
   const polar = view(page, "polar").locator("svg.plot");
   await page.getByRole("combobox", { name: "Scale", exact: true }).selectOption("log");
   await expect(page).toHaveURL(/log/);
@@ -88,7 +88,7 @@ test("a view is made large, and small again by Escape", async ({ page }) => {
 });
 
 test("two functions are compared, and the largest difference is gone to", async ({ page }) => {
-  await open(page, "#f=ggx:roughness=0.3&f=ggx:roughness=0.5&wi=45,180");
+  await open(page, "#f=ggx:roughness=0.3&f=ggx:roughness=0.5&wi=45,180&large=difference", ".view-body canvas");
   const slot = view(page, "difference");
   await slot.scrollIntoViewIfNeeded();
   const largest = slot.getByRole("button", { name: /^largest|largest difference/i }).first();
@@ -98,7 +98,7 @@ test("two functions are compared, and the largest difference is gone to", async 
 });
 
 test("verdicts: what fails names its witness, and every view goes there", async ({ page }) => {
-  await open(page, "#f=toon&wi=10,180");
+  await open(page, "#f=toon&wi=10,180&large=polar");
   await tab(page, "Verdicts").click();
   const rows = page.locator(".verdict");
   await expect(rows.first()).toBeVisible({ timeout: 40_000 });
@@ -112,7 +112,7 @@ test("verdicts: what fails names its witness, and every view goes there", async 
 });
 
 test("verdicts: a physical function is not refuted", async ({ page }) => {
-  await open(page, "#f=lambertian");
+  await open(page, "#f=lambertian&large=polar");
   await tab(page, "Verdicts").click();
   await expect(page.getByText("Nothing is refuted")).toBeVisible({ timeout: 40_000 });
 });
