@@ -38,6 +38,8 @@ export const REACH = 1.22;
 
 /** A frame of a usual screen with some slack, milliseconds. */
 const FRAME = 20;
+/** The longest pause between frames, milliseconds. */
+const LONGEST = 500;
 
 export interface Part {
   /** sRGB, as a style sheet has it. */
@@ -205,11 +207,11 @@ export class LobeScene {
     if (shown) this.invalidate();
   }
 
-  /** Draws in the next frame; where drawing is slow, not so often that it takes more than a fifth of the time from everything else. */
+  /** Draws in the next frame; where drawing is slow, not so often that everything else comes to a halt. */
   invalidate(): void {
     if (this.waiting || !this.shown) return;
     this.waiting = true;
-    const wait = this.last + 4 * this.cost - performance.now();
+    const wait = this.last + Math.min(4 * this.cost, LONGEST) - performance.now();
     if (wait > 0) setTimeout(() => requestAnimationFrame(() => this.draw()), wait);
     else requestAnimationFrame(() => this.draw());
   }

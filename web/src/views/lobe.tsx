@@ -154,7 +154,7 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
         <Knob which="viewer" scene={scene} />
       </div>
       <p class="view-note">
-        {cosine.value ? "f cos θr" : "f"} in sr⁻¹{scale.value !== "linear" && `, radius ${scale.value === "log" ? "logarithmic" : "cube root"}`}
+        {cosine.value ? "f cos θr" : "f"} in sr⁻¹{scale.value !== "linear" && `, ${scale.value === "log" ? "logarithmic" : "cube root"}`}
       </p>
       {problem !== null && (
         <p class="view-complaint" role="alert">

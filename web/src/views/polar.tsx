@@ -114,7 +114,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
       <Reading place="corner" />
       <p class="view-note top">
         {quantity}
-        {scale.value !== "linear" && `, radius ${scale.value === "log" ? "logarithmic" : "cube root"}`}
+        {scale.value !== "linear" && `, ${scale.value === "log" ? "logarithmic" : "cube root"}`}
         {notes.map((note) => `; ${note}`)}
       </p>
       <Complaints of={complaintsOf(curves)} />
