@@ -8,7 +8,7 @@ import { wi, wo } from "../state";
 
 export type Which = "light" | "viewer";
 
-/** A function that gets places of a pointer, in pixels from the upper left of `element`, until it is let go. */
+/** Tells `moved` where a pointer is, in pixels from the upper left of `element`, until it is let go. */
 export function follow(event: PointerEvent & { currentTarget: Element }, element: Element, moved: (x: number, y: number) => void): void {
   if (event.button !== 0) return;
   event.preventDefault();
