@@ -225,8 +225,8 @@ fn t18_the_factors_are_those_of_the_model() {
     );
     let value = facets.array("value");
     let cos_i = 50f64.to_radians().cos();
-    for i in 0..angles.len() {
-        let cos_r = f64::from(angles[i]).to_radians().cos();
+    for (i, angle) in angles.iter().enumerate() {
+        let cos_r = f64::from(*angle).to_radians().cos();
         let product = f64::from(f[i]) * f64::from(g[i]) * f64::from(d[i]) / (4.0 * cos_i * cos_r);
         near(f64::from(value[3 * i]), product, 1e-5);
         assert!((0.0..=1.0).contains(&g[i]) && (0.0..=1.0).contains(&f[i]));
