@@ -1,5 +1,5 @@
 /** A small polar plot: lobes in the plane of incidence, with the directions of the light and the viewer. */
-import type { ComponentChildren, JSX } from "preact";
+import type { JSX } from "preact";
 import type { Reply } from "../engine/protocol";
 import { onPolar } from "../plot/directions";
 import { number, roundUp } from "../plot/scale";
@@ -21,7 +21,6 @@ interface Props {
   cone?: number;
   /** What the rim means, where it isn't the lobes' largest value. */
   largest?: number;
-  children?: ComponentChildren;
 }
 
 export function Polar({ label, lobes, lights = [], viewer = null, cone, largest }: Props): JSX.Element {

@@ -20,7 +20,8 @@ export class Camera {
     azimuth: number,
     elevation: number,
     private readonly centre: readonly [number, number],
-    private readonly scale: number,
+    /** Pixels of a unit length that is seen from the side. */
+    readonly scale: number,
   ) {
     const [ca, sa] = [Math.cos(azimuth * DEGREE), Math.sin(azimuth * DEGREE)];
     const [ce, se] = [Math.cos(elevation * DEGREE), Math.sin(elevation * DEGREE)];

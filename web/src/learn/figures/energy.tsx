@@ -107,7 +107,7 @@ export function ReflectionEquation(): JSX.Element {
           <Slider label="viewer" value={viewer} min={-80} max={80} unit="°" onValue={setViewer} />
           <Numbers
             rows={[
-              ...LIGHTS.map(({ name }, i) => ({ name: `L${"₁₂₃"[i]} f cosθ${"₁₂₃"[i]}`, value: answer === null ? null : figureOf(terms[i]), look: `ls-${i}`, key: name })),
+              ...LIGHTS.map((_, i) => ({ name: `L${"₁₂₃"[i]} f cosθ${"₁₂₃"[i]}`, value: answer === null ? null : figureOf(terms[i]), look: `ls-${i}` })),
               { name: "Lr, their sum", value: figureOf(total), strong: true },
             ]}
           />

@@ -6,7 +6,7 @@ import { Drawing, Figure, Numbers, Slider, figureOf, type Size } from "../figure
 import { Camera, arc, ring, times } from "../space";
 import { useLearn } from "../use";
 
-const camera = ({ width, height }: Size, scale = 0.42): Camera => new Camera(32, 20, [width / 2, height * 0.52], Math.min(height, width) * scale);
+const camera = ({ width, height }: Size): Camera => new Camera(32, 20, [width / 2, height * 0.52], Math.min(height, width) * 0.42);
 
 /** The sphere as an outline and its equator, and what is drawn on it. */
 function Globe({ size, radius = 1, children }: { size: Size; radius?: number; children: (camera: Camera) => ComponentChildren }): JSX.Element {
@@ -14,10 +14,9 @@ function Globe({ size, radius = 1, children }: { size: Size; radius?: number; ch
   const centre = view.place([0, 0, 0]);
   const equator = view.line(ring({ theta: 0, phi: 0 }, 90).map((v) => times(v, radius)), true);
   const meridian = view.line(ring({ theta: 90, phi: 90 }, 90).map((v) => times(v, radius)), true);
-  const rim = Math.hypot(view.place([0, 0, radius]).x - centre.x, view.place([0, 0, radius]).y - centre.y) / Math.cos((20 * Math.PI) / 180);
   return (
     <>
-      <circle class="globe" cx={centre.x} cy={centre.y} r={rim} />
+      <circle class="globe" cx={centre.x} cy={centre.y} r={radius * view.scale} />
       <path class="back" d={equator.back + meridian.back} />
       {children(view)}
       <path class="grid" d={equator.front + meridian.front} />

@@ -2,9 +2,9 @@
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { shown } from "../../plot/tone";
-import { Chart, pairs } from "../chart";
+import { Chart, luminance, pairs } from "../chart";
 import { Choice, Drawing, Figure, Numbers, Slider, figureOf } from "../figure";
-import { useAnswer, useLearn } from "../use";
+import { useLearn } from "../use";
 import { Cells } from "./cells";
 
 export function Light(): JSX.Element {
@@ -161,12 +161,11 @@ export function RadiantExitance(): JSX.Element {
   const [kind, setKind] = useState<"paint" | "gold" | "mirror">("paint");
   const text = { paint: `lambertian:reflectance=${reflectance}`, gold: "ggx:metal=gold,roughness=0.3", mirror: "mirror:metal=silver" }[kind];
   const { answer, complaint } = useLearn<{ irradiance: number; exitance: number[]; albedo: number[] }>({ figure: "exitance", function: text });
-  const grey = useAnswer("describe", { function: text });
-  const mean = (v: number[] | undefined): number | null => (v === undefined ? null : 0.2126 * v[0]! + 0.7152 * v[1]! + 0.0722 * v[2]!);
+  const mean = (v: number[] | undefined): number | null => (v === undefined ? null : luminance(v[0]!, v[1]!, v[2]!));
   const [e, m] = [answer?.irradiance ?? null, mean(answer?.exitance)];
   return (
     <Figure
-      complaint={complaint ?? grey.complaint}
+      complaint={complaint}
       caption="Under a uniform sky of unit radiance π watts arrive on each square metre; the arrows are as wide as what arrives and what leaves."
       controls={
         <>
