@@ -27,7 +27,8 @@ interface Props {
   mark?: number | null;
 }
 
-const ROOM = { left: 46, right: 12, top: 14, bottom: 40 };
+/** Around the lines, for the axes. */
+export const ROOM = { left: 54, right: 12, top: 14, bottom: 40 };
 
 export function Chart({ label, x, y, lines, levels = [], mark = null }: Props): JSX.Element {
   return (

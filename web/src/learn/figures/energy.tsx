@@ -93,50 +93,52 @@ export function ReflectionEquation(): JSX.Element {
   const curve = useAnswer("curve", { function: text, wi: wo, cosine: false });
   const total = answer === null ? null : luminance(answer.sum[0]!, answer.sum[1]!, answer.sum[2]!);
   return (
-    <Figure
-      complaint={complaint ?? curve.complaint}
-      caption="Three lights. Each adds its own L f cosθ, shown as a bar; what the viewer sees is their sum."
-      controls={
-        <>
-          {LIGHTS.map(({ name }, i) => (
-            <div key={name} class="learn-pair">
-              <Check label={`light ${name}`} value={on[i]!} onValue={(v) => setOn(on.map((o, k) => (k === i ? v : o)))} />
-              <Slider label="as bright as" value={strengths[i]!} min={0} max={2} step={0.05} onValue={(v) => setStrengths(strengths.map((s, k) => (k === i ? v : s)))} />
-            </div>
-          ))}
-          <Slider label="viewer" value={viewer} min={-80} max={80} unit="°" onValue={setViewer} />
-          <Numbers
-            rows={[
-              ...LIGHTS.map((_, i) => ({ name: `L${"₁₂₃"[i]} f cosθ${"₁₂₃"[i]}`, value: answer === null ? null : figureOf(terms[i]), look: `ls-${i}` })),
-              { name: "Lr, their sum", value: figureOf(total), strong: true },
-            ]}
-          />
-        </>
-      }
-    >
-      <Polar
-        label={`Three lights in the plane, the viewer at ${viewer}°.`}
-        lobes={[{ look: "ls-7", reply: curve.reply === null ? null : flipped(curve.reply, viewer) }]}
-        lights={LIGHTS.filter((_, i) => on[i]).map(({ angle, name }) => ({ angle, name, strength: 0.3 + 0.35 * strengths[LIGHTS.findIndex((l) => l.name === name)]! }))}
-        viewer={viewer}
-      />
-      <Drawing ratio={9} label={`The three terms: ${terms.map((t) => figureOf(t, 3)).join(", ")}; their sum: ${figureOf(total, 3) ?? "…"}.`}>
-        {({ width, height }) => {
-          const scale = (width - 16) / Math.max(1.2, total ?? 0);
-          let x = 8;
-          return terms.map((t, i) => {
-            const bar = (
-              <g key={i} class={`ls-${i}`}>
-                <rect class="term" x={x} y={6} width={Math.max(0, t * scale)} height={height - 12} />
-              </g>
-            );
-            x += t * scale;
-            return bar;
-          });
-        }}
-      </Drawing>
+    <>
+      <Figure
+        complaint={complaint ?? curve.complaint}
+        caption="Three lights. Each adds its own L f cosθ, shown as a bar; what the viewer sees is their sum."
+        controls={
+          <>
+            {LIGHTS.map(({ name }, i) => (
+              <div key={name} class="learn-pair">
+                <Check label={`light ${name}`} value={on[i]!} onValue={(v) => setOn(on.map((o, k) => (k === i ? v : o)))} />
+                <Slider label="as bright as" value={strengths[i]!} min={0} max={2} step={0.05} onValue={(v) => setStrengths(strengths.map((s, k) => (k === i ? v : s)))} />
+              </div>
+            ))}
+            <Slider label="viewer" value={viewer} min={-80} max={80} unit="°" onValue={setViewer} />
+            <Numbers
+              rows={[
+                ...LIGHTS.map((_, i) => ({ name: `L${"₁₂₃"[i]} f cosθ${"₁₂₃"[i]}`, value: answer === null ? null : figureOf(terms[i]), look: `ls-${i}` })),
+                { name: "Lr, their sum", value: figureOf(total), strong: true },
+              ]}
+            />
+          </>
+        }
+      >
+        <Polar
+          label={`Three lights in the plane, the viewer at ${viewer}°.`}
+          lobes={[{ look: "ls-7", reply: curve.reply === null ? null : flipped(curve.reply, viewer) }]}
+          lights={LIGHTS.filter((_, i) => on[i]).map(({ angle, name }) => ({ angle, name, strength: 0.3 + 0.35 * strengths[LIGHTS.findIndex((l) => l.name === name)]! }))}
+          viewer={viewer}
+        />
+        <Drawing ratio={9} label={`The three terms: ${terms.map((t) => figureOf(t, 3)).join(", ")}; their sum: ${figureOf(total, 3) ?? "…"}.`}>
+          {({ width, height }) => {
+            const scale = (width - 16) / Math.max(1.2, total ?? 0);
+            let x = 8;
+            return terms.map((t, i) => {
+              const bar = (
+                <g key={i} class={`ls-${i}`}>
+                  <rect class="term" x={x} y={6} width={Math.max(0, t * scale)} height={height - 12} />
+                </g>
+              );
+              x += t * scale;
+              return bar;
+            });
+          }}
+        </Drawing>
+      </Figure>
       <Continuous text={text} viewer={viewer} />
-    </Figure>
+    </>
   );
 }
 
@@ -155,30 +157,32 @@ function Continuous({ text, viewer }: { text: string; viewer: number }): JSX.Ele
   const sums = (every3(arrays.sums) ?? []).map((s, i): [number, number] => [i + 1, s]);
   const exact = answer === null ? null : luminance(answer.exact[0]!, answer.exact[1]!, answer.exact[2]!);
   return (
-    <div class="learn-further">
-      <h3>From a sum to an integral</h3>
-      <div class="learn-drawings" data-layout="halves">
-        <Cells label={`The sky in cells, by what each adds to the reflected radiance.`} steps={steps} values={every3(arrays.terms)} />
-        <Chart
-          label={`The sum over the number of steps: it comes near ${figureOf(exact) ?? "…"}.`}
-          x={{ from: 1, to: 32, name: "steps in θ", ticks: [1, 8, 16, 24, 32] }}
-          y={{ from: 0, to: Math.max(1e-6, exact ?? 0, ...sums.map(([, s]) => s)) * 1.1, name: "Lr" }}
-          lines={[{ name: "sum", look: "ls-0", points: sums, dots: true }]}
-          levels={exact === null ? [] : [{ value: exact, name: "integral" }]}
-          mark={steps}
-        />
-      </div>
-      {complaint !== null ? <p>{complaint.message}</p> : null}
-      <div class="learn-controls">
-        <Choice label="sky" value={sky} options={SKIES} onValue={setSky} />
-        <Slider label="steps in θ" value={steps} min={1} max={16} text={`${steps} (${4 * steps * steps} lights)`} onValue={setSteps} />
-        <Numbers
-          rows={[
-            { name: "sum", value: answer === null ? null : figureOf(luminance(answer.sum[0]!, answer.sum[1]!, answer.sum[2]!)), strong: true },
-            { name: "integral", value: figureOf(exact) },
-          ]}
-        />
-      </div>
-    </div>
+    <Figure
+      layout="halves"
+      complaint={complaint}
+      caption="From a sum to an integral: the sky in cells, each a light and as bright as what it adds. The more there are, the nearer is their sum to the integral."
+      controls={
+        <>
+          <Choice label="sky" value={sky} options={SKIES} onValue={setSky} />
+          <Slider label="steps in θ" value={steps} min={1} max={16} text={`${steps} (${4 * steps * steps} lights)`} onValue={setSteps} />
+          <Numbers
+            rows={[
+              { name: "sum", value: answer === null ? null : figureOf(luminance(answer.sum[0]!, answer.sum[1]!, answer.sum[2]!)), strong: true },
+              { name: "integral", value: figureOf(exact) },
+            ]}
+          />
+        </>
+      }
+    >
+      <Cells label="The sky in cells, by what each adds to the reflected radiance." steps={steps} values={every3(arrays.terms)} />
+      <Chart
+        label={`The sum over the number of steps: it comes near ${figureOf(exact) ?? "…"}.`}
+        x={{ from: 1, to: 32, name: "steps in θ", ticks: [1, 8, 16, 24, 32] }}
+        y={{ from: 0, to: Math.max(1e-6, exact ?? 0, ...sums.map(([, s]) => s)) * 1.1, name: "Lr" }}
+        lines={[{ name: "sum", look: "ls-0", points: sums, dots: true }]}
+        levels={exact === null ? [] : [{ value: exact, name: "integral" }]}
+        mark={steps}
+      />
+    </Figure>
   );
 }

@@ -2,7 +2,7 @@
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { shown } from "../../plot/tone";
-import { Chart, luminance, pairs } from "../chart";
+import { Chart, luminance, pairs, ROOM } from "../chart";
 import { Choice, Drawing, Figure, Numbers, Slider, figureOf } from "../figure";
 import { useLearn } from "../use";
 import { Cells } from "./cells";
@@ -45,7 +45,7 @@ export function Light(): JSX.Element {
           lambda === undefined || colour === undefined
             ? null
             : Array.from(lambda, (nm, i) => {
-                const [left, right] = [46, 12];
+                const [left, right] = [ROOM.left, ROOM.right];
                 const w = (width - left - right) / lambda.length;
                 return <rect key={nm} x={left + i * w} width={w + 0.5} height={height} fill={`rgb(${shown(Array.from(colour.subarray(3 * i, 3 * i + 3)), 0, "srgb").join(" ")})`} />;
               })
