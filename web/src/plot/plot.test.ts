@@ -5,6 +5,7 @@ import { grid } from "./grid";
 import { continueRim } from "./rim";
 import { csvText } from "./save";
 import { aligned, axis, degrees, number, roundUp } from "./scale";
+import { spread } from "./spread";
 import { picture, shown, srgb8 } from "./tone";
 
 describe("directions", () => {
@@ -189,5 +190,14 @@ describe("pictures and tables", () => {
 
   test("a table quotes texts, keeps nine digits and leaves out what is no number", () => {
     expect(csvText(["a,b", "c"], [[1 / 3, NaN], ['x "y"', -2e-8]])).toBe('"a,b",c\r\n0.333333333,\r\n"x ""y""",-2e-8\r\n');
+  });
+});
+
+describe("labels", () => {
+  test("are spread where they would overlap, and only there", () => {
+    expect(spread([100, 50], 14)).toEqual([100, 50]);
+    expect(spread([100, 104, 30], 14)).toEqual([90, 104, 30]);
+    expect(spread([50, 50, 50], 10)).toEqual([50, 40, 30]);
+    expect(spread([NaN, 20], 10)).toEqual([NaN, 20]);
   });
 });

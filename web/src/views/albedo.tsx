@@ -8,6 +8,7 @@ import { clamp, STEEPEST } from "../plot/directions";
 import type { Size } from "../plot/grid";
 import { csvText, svgText } from "../plot/save";
 import { number } from "../plot/scale";
+import { spread } from "../plot/spread";
 import { srgb8 } from "../plot/tone";
 import { channel, type Shown, visible, wi } from "../state";
 import { Complaints, Frame } from "./frame";
@@ -125,6 +126,8 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
   const x = scaleLinear().domain([0, 90]).range([LEFT, width - RIGHT]);
   const y = scaleLinear().domain([0, top]).range([bottom, TOP]);
   const at = clamp(wi.value.theta, 0, 90);
+  const marks = all.flatMap((c) => channels.map((one) => ({ c, one, value: between(c, at, one) })));
+  const labels = spread(marks.map((m) => y(m.value) - 9), 14);
   return (
     <>
       <svg ref={svg} class="plot" viewBox={`0 0 ${width} ${height}`} width={width} height={height} role="group" aria-label={words(all)}>
@@ -161,10 +164,20 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
             return [
               <path key={`${c.shown.id}${one}`} class={`curve ${look}`} d={`M${line(c.total)}`} stroke-dasharray={dash(c.shown.colour) || undefined} />,
               c.shown.description?.transmits === true && <path key={`${c.shown.id}${one}r`} class={`curve thin ${look}`} d={`M${line(c.reflected)}`} stroke-dasharray="1.5 3" />,
-              <Mark key={`${c.shown.id}${one}m`} look={look} cx={x(at)} cy={y(between(c, at, one))} value={between(c, at, one)} left={at > 70} />,
             ];
           }),
         )}
+        {marks.map(({ c, one, value }, k) => (
+          <Mark
+            key={`${c.shown.id}${one}m`}
+            look={channel.value === "rgb" ? `channel-${one}` : `series-${c.shown.colour}`}
+            cx={x(at)}
+            cy={y(value)}
+            label={labels[k]!}
+            value={value}
+            left={at > 70}
+          />
+        ))}
         <Handle
           which="light"
           x={x(at)}
@@ -184,12 +197,12 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
   );
 }
 
-function Mark({ look, cx, cy, value, left }: { look: string; cx: number; cy: number; value: number; left: boolean }): JSX.Element | null {
+function Mark({ look, cx, cy, label, value, left }: { look: string; cx: number; cy: number; label: number; value: number; left: boolean }): JSX.Element | null {
   if (!Number.isFinite(cy)) return null;
   return (
     <g class={look}>
       <circle class="mark" cx={cx} cy={cy} r={3.5} />
-      <text class={left ? "value strong to-left" : "value strong to-right"} x={cx + (left ? -8 : 8)} y={cy - 9}>
+      <text class={left ? "value strong to-left" : "value strong to-right"} x={cx + (left ? -8 : 8)} y={label}>
         {value.toFixed(3)}
       </text>
     </g>
