@@ -176,11 +176,6 @@ macro_rules! models {
                 match self { $(Self::$variant(m) => visitor.visit(m),)* $(Self::$composite(m) => visitor.visit_composite(m),)* }
             }
 
-            /// Whether it is made of others.
-            pub(crate) fn is_composite(&self) -> bool {
-                match self { $(Self::$variant(_) => false,)* $(Self::$composite(_) => true,)* }
-            }
-
             /// The registry's entry.
             pub fn info(&self) -> &'static ModelInfo {
                 match self { $(Self::$variant(_) => &const { $module::INFO },)* $(Self::$composite(_) => &const { $cmodule::INFO },)* }
