@@ -273,7 +273,7 @@ struct On<T>(InstructionSet, T);
 /// One direction after the other, for the oldest processors of a kind whose others have more: their lanes wouldn't be worth the code.
 struct Singly<'a, const N: usize>(&'a Model<f32, N>);
 
-/// Whether models are evaluated over lanes at all. In WebAssembly they aren't: a page loads a third less code for it.
+/// Whether models are evaluated over lanes at all. In WebAssembly they aren't: a page loads a tenth less code for it.
 const LANES: bool = cfg!(not(target_family = "wasm"));
 
 /// Whether lanes under this instruction set are worth the code.

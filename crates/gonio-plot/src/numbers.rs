@@ -27,7 +27,7 @@ pub struct LobeSurface {
 /// - `wi`: to the light, unit
 /// - `kind`: how the values will be drawn, which decides where the surface bends; [`ScaleKind::Auto`] stands for the cube root, which
 ///   bends more than proportion does
-/// - `quick`: for a picture that is about to change: some ten times fewer triangles, and a needle's tip may be blunt
+/// - `quick`: for a picture that is about to change: about half the triangles, and a needle's tip may be blunt
 pub fn lobe_surface(
     f: &Function,
     wi: Vec3<f64>,

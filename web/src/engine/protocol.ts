@@ -101,7 +101,7 @@ export interface Requests {
    * this one direction, as of mirrors and glass).
    */
   lobe: {
-    request: { function: string; wi: Angles; scale: "linear" | "cube-root" | "log"; cosine: boolean; /** For a picture that is about to change: ten times fewer triangles. */ quick?: boolean };
+    request: { function: string; wi: Angles; scale: "linear" | "cube-root" | "log"; cosine: boolean; /** For a picture that is about to change: about half the triangles. */ quick?: boolean };
     answer: { largest: [number, number, number] };
   };
   /**

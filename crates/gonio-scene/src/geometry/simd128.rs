@@ -1,4 +1,4 @@
-//! The kernel for WebAssembly with vectors of 128 bits: the same results as [`Portable`](super::kernel::Portable), several times faster.
+//! The kernel for WebAssembly with vectors of 128 bits: the same results as [`Portable`](super::kernel::Portable).
 //!
 //! Eight numbers are two vectors of four. Unsafe code, under one invariant: vector loads read the four numbers of an array.
 #![allow(unsafe_code)]
