@@ -8,7 +8,7 @@ import { Bar, Notices } from "./panels/bar";
 import { Drop } from "./panels/drop";
 import { Help } from "./panels/help";
 import { Legend } from "./panels/list";
-import { Panel } from "./panels/panel";
+import { openTab, Panel } from "./panels/panel";
 import { Picker } from "./panels/picker";
 import { NewShader } from "./panels/shader-new";
 import { Take } from "./panels/take";
@@ -49,7 +49,7 @@ function Explore(): JSX.Element {
     return () => removeEventListener("keydown", escape);
   }, []);
   return (
-    <main class="explore" data-pane={pane.value}>
+    <main class="explore" data-pane={pane.value} data-wide={openTab.value === "source" ? "" : undefined}>
       <Panel />
       <div class="main" id="views">
         <Legend />

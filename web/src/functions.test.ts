@@ -25,7 +25,7 @@ vi.mock("./engine/client", () => {
             for (const [key, value] of Object.entries(request.values ?? {})) if (value === null) values.delete(key);
               else values.set(key, value);
             const text = `${model.replace("@p", "")}${values.size > 0 ? ":" : ""}${[...values].map(([k, v]) => `${k}=${v}`).join(",")}`;
-            resolve({ answer: { text }, arrays: {} });
+            resolve({ answer: { text, parameters: [] }, arrays: {} });
           },
         });
       }),

@@ -1,10 +1,19 @@
 /** What can be done to the list of functions; every change of a description goes through the library. */
-import { engine, EngineError } from "./engine/client";
-import type { Complaint, Description, Reply } from "./engine/protocol";
+import { batch } from "@preact/signals";
+import { engine, EngineError, type Whole } from "./engine/client";
+import type { Along, Complaint, Description, Parameter, Reply } from "./engine/protocol";
 import { difference, functions, selected, type Shown } from "./state";
 
 /** As many as the palette has colours, and as the command plots together. */
 export const MOST = 8;
+
+/** A question of a function that is asked along with every change of it, and what takes the answer: then both are drawn at once. */
+export interface Companion {
+  along: Along;
+  take(text: string, answer: Reply | EngineError, changed: number): void;
+}
+/** What asks along: of the function with this id, or nothing while it isn't shown. */
+export const companions: ((id: number) => Companion | null)[] = [];
 
 let nextId = 1;
 /** Parameters that were asked for and not yet answered, by function: a newer request holds the older ones' changes too. */
@@ -41,14 +50,25 @@ export function add(text: string, shown: { colour?: number; visible?: boolean } 
   return id;
 }
 
+/** The new parameters, those that are as before as the objects that they were: their controls need not be drawn anew. */
+function kept(before: Parameter[] | undefined, now: Parameter[]): Parameter[] {
+  return now.map((parameter, k) => (before !== undefined && JSON.stringify(before[k]) === JSON.stringify(parameter) ? before[k]! : parameter));
+}
+
+type Asked = (along: Along[]) => Promise<Whole<"describe"> | Whole<"set"> | null>;
+
 /** Whether the library understood; null if a newer request took this one's place. */
-async function settle(id: number, asked: Promise<Reply<"describe"> | Reply<"set"> | null>, preset: string | null): Promise<boolean | null> {
+async function settle(id: number, ask: Asked, preset: string | null): Promise<boolean | null> {
   const changed = performance.now();
+  const with_ = companions.flatMap((companion) => companion(id) ?? []);
   try {
-    const reply = await asked;
+    const reply = await ask(with_.map((one) => one.along));
     if (reply === null) return null;
-    const description: Description = reply.answer;
-    update(id, { text: description.text, preset, description, complaint: null, changed });
+    const description: Description = { ...reply.answer, parameters: kept(find(id)?.description?.parameters, reply.answer.parameters) };
+    batch(() => {
+      with_.forEach((one, k) => one.take(description.text, reply.along[k]!, changed));
+      update(id, { text: description.text, preset, description, complaint: null, changed });
+    });
     return true;
   } catch (error) {
     update(id, { complaint: complaintOf(error) });
@@ -61,7 +81,7 @@ export async function setText(id: number, text: string): Promise<boolean | null>
   pending.delete(id);
   texts.set(id, text);
   const preset = /^[\w-]+@[\w-]+$/.test(text) ? text : null;
-  const done = await settle(id, engine.ask("describe", { function: text }, { pool: "fast", key: `function:${id}` }), preset);
+  const done = await settle(id, (along) => engine.ask("describe", { function: text }, { pool: "fast", key: `function:${id}`, along }), preset);
   if (texts.get(id) === text) texts.delete(id);
   return done;
 }
@@ -72,7 +92,8 @@ export async function setValues(id: number, values: Record<string, string | null
   if (shown === undefined) return false;
   const all = { ...pending.get(id), ...values };
   pending.set(id, all);
-  const done = await settle(id, engine.ask("set", { function: texts.get(id) ?? shown.text, values: all }, { pool: "fast", key: `function:${id}` }), null);
+  const base = texts.get(id) ?? shown.text;
+  const done = await settle(id, (along) => engine.ask("set", { function: base, values: all }, { pool: "fast", key: `function:${id}`, along }), null);
   if (pending.get(id) === all) pending.delete(id);
   return done;
 }

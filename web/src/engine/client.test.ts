@@ -24,9 +24,9 @@ class FakeWorker {
   asked(): unknown[] {
     return this.calls.map((call) => (call.request as { function: string }).function);
   }
-  answer(answer: unknown, numbers: number[] = []): void {
+  answer(answer: unknown, numbers: number[] = [], along: Extract<FromWorker, { answer: unknown }>["along"] = []): void {
     const data = Float32Array.from(numbers).buffer;
-    this.onmessage!({ data: { id: this.calls.at(-1)!.id, answer, arrays: { values: [0, numbers.length] }, data } });
+    this.onmessage!({ data: { id: this.calls.at(-1)!.id, answer, arrays: { values: [0, numbers.length] }, data, along } });
   }
   refuse(message: string): void {
     this.onmessage!({ data: { id: this.calls.at(-1)!.id, complaint: { message, help: null, place: null }, lost: false } });
@@ -62,6 +62,16 @@ describe("the engine's pools", () => {
     const reply = ask("a");
     FakeWorker.all[0]!.answer({ largest: [1, 1, 1] }, [1, 2, 3]);
     expect([...(await reply)!.arrays["values"]!]).toEqual([1, 2, 3]);
+  });
+  it("give what was asked along with it, each an answer or the library's complaint", async () => {
+    const along = [1, 2].map(() => ({ operation: "curve" as const, request: { function: "", wi: { theta: 0, phi: 0 }, cosine: false } }));
+    const reply = engine.ask("describe", { function: "a" }, { pool: "fast", key: "function:1", along });
+    const worker = FakeWorker.all[0]!;
+    expect(worker.calls[0]!.along).toEqual(along);
+    worker.answer("A", [], [{ answer: "curve", arrays: { angles: [0, 2] }, data: Float32Array.from([4, 5]).buffer }, { complaint: { message: "it has no curve", help: null, place: null } }]);
+    const [curve, refused] = (await reply)!.along;
+    expect([...(curve as { arrays: Record<string, Float32Array> }).arrays["angles"]!]).toEqual([4, 5]);
+    expect(refused).toMatchObject({ complaint: { message: "it has no curve" } });
   });
   it("let what runs run, and drop what waits for what is newer", async () => {
     const replies = [ask("a"), ask("b"), ask("c"), ask("d", { pool: "fast", key: "other" })];

@@ -6,7 +6,8 @@
  * first. It rejects with an `EngineError`, whose `complaint` is to be shown as it is.
  */
 import { signal } from "@preact/signals";
-import type { Complaint, Operation, Reply, Requests } from "./protocol";
+import type { Along, Complaint, Operation, Reply, Requests } from "./protocol";
+import type { Answered } from "./wasm";
 import type { FromWorker, ToWorker } from "./worker";
 
 /** `fast`: what is drawn while a slider moves; `slow`: albedo, exports; `check`: verdicts; `render`: parts of pictures, several at once. */
@@ -20,7 +21,12 @@ export interface Ask {
   early?: boolean;
   /** A running request of the same key is ended, not let run: for what takes seconds. */
   interrupt?: boolean;
+  /** Answered in the same call, of the function that a `describe` or `set` answers: one way to the worker and back, not two. */
+  along?: Along[];
 }
+
+/** An answer, and those of what was asked along. */
+export type Whole<K extends Operation = Operation> = Reply<K> & { along: (Reply | EngineError)[] };
 
 export class EngineError extends Error {
   override name = "EngineError";
@@ -35,7 +41,8 @@ interface Job {
   request: unknown;
   key: string | null;
   early: boolean;
-  resolve: (reply: Reply | null) => void;
+  along: Along[];
+  resolve: (reply: Whole | null) => void;
   reject: (error: EngineError) => void;
 }
 
@@ -79,17 +86,17 @@ export class Engine {
     return this.size[pool];
   }
 
-  ask<K extends Operation>(operation: K, request: Requests[K]["request"], how: Ask): Promise<Reply<K> | null> {
-    return new Promise<Reply | null>((resolve, reject) => {
+  ask<K extends Operation>(operation: K, request: Requests[K]["request"], how: Ask): Promise<Whole<K> | null> {
+    return new Promise<Whole | null>((resolve, reject) => {
       if (failure.value !== null) {
         reject(new EngineError(failure.value));
         return;
       }
-      const job: Job = { id: this.next++, operation, request, key: how.key ?? null, early: how.early ?? URGENT.has(operation), resolve, reject };
+      const job: Job = { id: this.next++, operation, request, key: how.key ?? null, early: how.early ?? URGENT.has(operation), along: how.along ?? [], resolve, reject };
       this.enqueue(how.pool, job);
       if (how.interrupt && job.key !== null) this.interrupt(how.pool, job.key);
       this.pump(how.pool);
-    }) as Promise<Reply<K> | null>;
+    }) as Promise<Whole<K> | null>;
   }
 
   /** Takes back what waits under a key that begins so; what runs is answered with null. */
@@ -201,7 +208,7 @@ export class Engine {
       const job = this.waiting[pool].shift()!;
       lane.job = job;
       lane.watchdog = setTimeout(() => this.hung(pool, lane), LIMIT[pool] * 1000);
-      this.send(lane, { kind: "call", id: job.id, operation: job.operation, request: job.request });
+      this.send(lane, { kind: "call", id: job.id, operation: job.operation, request: job.request, along: job.along });
     }
   }
 
@@ -233,9 +240,8 @@ export class Engine {
     }
     if ("complaint" in message) job.reject(new EngineError(message.complaint));
     else {
-      const arrays: Record<string, Float32Array> = {};
-      for (const [name, [first, count]] of Object.entries(message.arrays)) arrays[name] = new Float32Array(message.data, first * 4, count);
-      job.resolve({ answer: message.answer, arrays } as Reply);
+      const along = (message.along ?? []).map((one) => ("complaint" in one ? new EngineError(one.complaint) : reply(one)));
+      job.resolve({ ...reply(message), along });
     }
     this.pump(pool);
   }
@@ -274,6 +280,12 @@ export class Engine {
   private send(lane: Lane, message: ToWorker): void {
     lane.worker.postMessage(message);
   }
+}
+
+function reply({ answer, arrays, data }: Answered): Reply {
+  const views: Record<string, Float32Array> = {};
+  for (const [name, [first, count]] of Object.entries(arrays)) views[name] = new Float32Array(data, first * 4, count);
+  return { answer, arrays: views } as Reply;
 }
 
 /** The one engine of the page. */

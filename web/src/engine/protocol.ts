@@ -224,6 +224,9 @@ export interface Report {
 /** An answer of the engine. */
 export type Reply<K extends Operation = Operation> = { answer: Requests[K]["answer"]; arrays: Record<string, Float32Array> };
 
+/** What is asked along with a `describe` or `set`: of the function that these answer, whatever `function` says. */
+export type Along = { [K in Operation]: { operation: K; request: Requests[K]["request"] } }[Operation];
+
 /** What the library says of a request that it can't answer: its one error, and a hint how to go on. */
 export interface Complaint {
   message: string;

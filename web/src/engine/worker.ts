@@ -1,15 +1,15 @@
 /** A worker: one instance of the library, one call at a time. */
 import { File } from "@bjorn3/browser_wasi_shim";
-import { type Files, Instance, LibraryError } from "./wasm";
-import type { Complaint } from "./protocol";
+import { type Answered, type Files, Instance, LibraryError } from "./wasm";
+import type { Along, Complaint, Description } from "./protocol";
 
 export type ToWorker =
   | { kind: "start"; module: WebAssembly.Module; files: [string, Uint8Array][] }
   | { kind: "file"; name: string; bytes: Uint8Array }
-  | { kind: "call"; id: number; operation: string; request: unknown };
+  | { kind: "call"; id: number; operation: string; request: unknown; along: Along[] };
 
 export type FromWorker =
-  | { id: number; answer: unknown; arrays: Record<string, [number, number]>; data: ArrayBuffer }
+  | ({ id: number; along?: (Answered | { complaint: Complaint })[] } & Answered)
   | { id: number; complaint: Complaint; lost: boolean };
 
 /** What a worker's global scope has of this; the DOM's types describe a window. */
@@ -29,8 +29,11 @@ async function call(message: Extract<ToWorker, { kind: "call" }>): Promise<void>
     if (module === null) throw new Error("the worker was asked before it was started");
     instance ??= Instance.make(module, files);
     running = await instance;
-    const { answer, arrays, data } = running.call(message.operation, message.request);
-    scope.postMessage({ id: message.id, answer, arrays, data }, [data]);
+    const answered = running.call(message.operation, message.request);
+    const along: (Answered | { complaint: Complaint })[] = [];
+    for (const one of message.along) along.push(follow(running, one, answered.answer as Description));
+    const data = [answered, ...along].flatMap((a) => ("data" in a ? [a.data] : []));
+    scope.postMessage({ id: message.id, ...answered, along }, data);
   } catch (error) {
     if (error instanceof LibraryError) {
       scope.postMessage({ id: message.id, complaint: error.complaint, lost: false }, []);
@@ -45,6 +48,16 @@ async function call(message: Extract<ToWorker, { kind: "call" }>): Promise<void>
       place: null,
     };
     scope.postMessage({ id: message.id, complaint, lost: true }, []);
+  }
+}
+
+/** What was asked along is answered for itself: a function that can be described may have no curve. */
+function follow(running: Instance, { operation, request }: Along, { text }: Description): Answered | { complaint: Complaint } {
+  try {
+    return running.call(operation, { ...request, function: text });
+  } catch (error) {
+    if (error instanceof LibraryError) return { complaint: error.complaint };
+    throw error;
   }
 }
 

@@ -1,5 +1,5 @@
 /** The bar above everything: where one is, and what concerns the whole page. */
-import { effect, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { busy } from "../engine/client";
 import { complain, dismissNotice, notices, say } from "../notices";
@@ -53,6 +53,20 @@ function copyLink(): void {
     .catch(() => (taking.value = true));
 }
 
+/** Whether the engine has been at work for a while: what is short shows nothing, for a dot that flickers would be restless. */
+const long = signal(false);
+const atWork = computed(() => busy.value > 0);
+let patience = 0;
+effect(() => {
+  clearTimeout(patience);
+  if (atWork.value) patience = setTimeout(() => (long.value = true), 400);
+  else long.value = false;
+});
+
+function Busy(): JSX.Element {
+  return <span class="busy" hidden={!long.value} aria-hidden="true" />;
+}
+
 export function Bar(): JSX.Element {
   return (
     <header class="bar">
@@ -72,7 +86,7 @@ export function Bar(): JSX.Element {
           Learn
         </a>
       </nav>
-      <span class="busy" data-busy={busy.value > 0 ? "" : undefined} aria-hidden="true" />
+      <Busy />
       <span class="spring" />
       <button type="button" class="button bar-button" onClick={copyLink}>
         <Icon name="share" />

@@ -1,5 +1,7 @@
 /** The panel beside the views: the functions, and all about the one that is selected. */
+import { computed } from "@preact/signals";
 import type { JSX } from "preact";
+import { useCallback } from "preact/hooks";
 import { aliases } from "../catalogue";
 import { filesIn, shortName } from "../core/text";
 import { held } from "../files";
@@ -8,10 +10,20 @@ import { current, type Shown } from "../state";
 import { Declarations, type Editing, Parameters, PresetButton, TextEditor } from "./description";
 import { FileFacts } from "./file-facts";
 import { FunctionList } from "./list";
+import type { Set } from "./parameter";
 import { ShaderEditor } from "./shader";
 import { type Tab, tab } from "./tab";
 import { Hint, Problem } from "./ui";
 import { Verdicts } from "./verdicts";
+
+/** The file of the selected function that can be edited. */
+const shader = computed(() => {
+  const shown = current.value;
+  return shown === null ? undefined : held.value.find((file) => file.source !== null && filesIn(shown.text).includes(file.name));
+});
+
+/** What the panel shows of the selected function: the source of what has none is its parameters. */
+export const openTab = computed<Tab>(() => (tab.value === "source" && shader.value === undefined ? "parameters" : tab.value));
 
 export function Panel(): JSX.Element {
   const shown = current.value;
@@ -24,13 +36,12 @@ export function Panel(): JSX.Element {
 }
 
 function Selected({ shown }: { shown: Shown }): JSX.Element {
-  const shader = held.value.find((file) => file.source !== null && filesIn(shown.text).includes(file.name));
   const tabs: { id: Tab; name: string }[] = [
     { id: "parameters", name: "Parameters" },
-    ...(shader !== undefined ? [{ id: "source" as const, name: "Source" }] : []),
+    ...(shader.value !== undefined ? [{ id: "source" as const, name: "Source" }] : []),
     { id: "verdicts", name: "Verdicts" },
   ];
-  const open = tabs.some((t) => t.id === tab.value) ? tab.value : "parameters";
+  const open = openTab.value;
   const keys = (event: KeyboardEvent): void => {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (step === undefined) return;
@@ -60,7 +71,7 @@ function Selected({ shown }: { shown: Shown }): JSX.Element {
       </div>
       <div class="tab-panel" id="tab-panel" role="tabpanel" aria-labelledby={`tab-${open}`}>
         {open === "parameters" ? <ParametersTab shown={shown} /> : null}
-        {open === "source" && shader !== undefined ? <ShaderEditor key={shader.name} file={shader} complaint={shown.complaint} /> : null}
+        {open === "source" && shader.value !== undefined ? <ShaderEditor key={shader.value.name} file={shader.value} complaint={shown.complaint} /> : null}
         {open === "verdicts" ? <Verdicts shown={shown} /> : null}
       </div>
     </section>
@@ -70,12 +81,14 @@ function Selected({ shown }: { shown: Shown }): JSX.Element {
 function ParametersTab({ shown }: { shown: Shown }): JSX.Element {
   const { description } = shown;
   const measured = held.value.filter((file) => file.kind === "measured" && filesIn(shown.text).includes(file.name));
+  // The same one as long as it can be, so that controls whose parameter is as before stay as they are.
+  const set = useCallback<Set>((name, text) => setValues(shown.id, { [name]: text }), [shown.id]);
   const editing: Editing = {
     key: String(shown.id),
     text: shown.text,
     description,
     change: (text) => setText(shown.id, text),
-    set: (name, text) => setValues(shown.id, { [name]: text }),
+    set,
   };
   return (
     <>

@@ -99,3 +99,18 @@ export function ofValue(channel: Channel, axis: Axis, values: ArrayLike<number>,
   const brightness = decode(axis.position(most)) / most;
   return [srgb8(r * brightness), srgb8(g * brightness), srgb8(b * brightness)];
 }
+
+/** A picture of values, 3 a pixel, into `out`, 4 codes a pixel; what is NaN (a direction below the horizon) is left transparent. */
+export function paintValues(out: Uint8ClampedArray, channel: Channel, axis: Axis, values: Float32Array): void {
+  for (let k = 0, o = 0; k + 2 < values.length; k += 3, o += 4) {
+    if (Number.isNaN(values[k]!)) continue;
+    out[o + 3] = 255;
+    const value = channel === "rgb" ? NaN : channelOf(channel, values, k);
+    if (Number.isFinite(value)) {
+      const m = 3 * Math.round(255 * axis.position(value));
+      out[o] = MAGMA[m]!;
+      out[o + 1] = MAGMA[m + 1]!;
+      out[o + 2] = MAGMA[m + 2]!;
+    } else out.set(ofValue(channel, axis, values, k), o);
+  }
+}

@@ -2,6 +2,7 @@ import { describe, expect, test } from "vitest";
 import { channelOf, magma, NOT_FINITE, ofDifference, ofValue } from "./colours";
 import * as directions from "./directions";
 import { grid } from "./grid";
+import { outline } from "./outline";
 import { continueRim } from "./rim";
 import { csvText } from "./save";
 import { aligned, axis, degrees, number, roundUp } from "./scale";
@@ -199,5 +200,30 @@ describe("labels", () => {
     expect(spread([100, 104, 30], 14)).toEqual([90, 104, 30]);
     expect(spread([50, 50, 50], 10)).toEqual([50, 40, 30]);
     expect(spread([NaN, 20], 10)).toEqual([NaN, 20]);
+  });
+});
+
+describe("outlines", () => {
+  const points = (path: string): number[][] => path.slice(1).split(/[LM]/).map((p) => p.split(" ").map(Number));
+
+  test("pass every point within a tenth of a pixel, with far fewer pieces", () => {
+    const xs = Float64Array.from({ length: 1000 }, (_, k) => 0.35 * k);
+    const ys = xs.map((x) => 200 - 150 * Math.exp(-(((x - 190) / 9) ** 2)));
+    const kept = points(outline(xs, ys));
+    expect(kept.length).toBeLessThan(150);
+    expect(kept[0]).toEqual([0, 200]);
+    expect(kept.at(-1)![0]).toBeCloseTo(349.7, 1);
+    xs.forEach((x, k) => {
+      const next = kept.findIndex((p, i) => i > 0 && p[0]! >= x - 0.06);
+      const [a, b] = [kept[next - 1]!, kept[next]!];
+      const share = (x - a[0]!) / (b[0]! - a[0]!);
+      const [dx, dy] = [b[0]! - a[0]!, b[1]! - a[1]!];
+      expect((Math.abs(a[1]! + share * dy - ys[k]!) * dx) / Math.hypot(dx, dy)).toBeLessThan(0.15);
+    });
+  });
+
+  test("keep a peak of one point, and break where a value is not finite", () => {
+    const xs = Float64Array.from([0, 1, 2, 3, 4, 5, 6, 7]);
+    expect(outline(xs, Float64Array.from([5, 5, 5, 1, 5, 5, NaN, 5]))).toBe("M0 5L2 5L3 1L4 5L5 5M7 5");
   });
 });

@@ -10,10 +10,11 @@ import { csvText, svgText } from "../plot/save";
 import { number } from "../plot/scale";
 import { spread } from "../plot/spread";
 import { srgb8 } from "../plot/tone";
-import { channel, type Shown, visible, wi } from "../state";
+import { channel, type Shown, wi } from "../state";
 import { Complaints, Frame } from "./frame";
 import { Handle, setWi } from "./handle";
 import { type Answer, Live, seen, settled } from "./live";
+import { paced } from "./pace";
 import { dash, keyedAngle, legend } from "./plane";
 import { complaintsOf } from "./reading";
 import { colour } from "./theme";
@@ -32,7 +33,7 @@ const BATCHES = [
 ];
 
 /** The azimuth matters for what isn't isotropic, and only for that. */
-const azimuth = (f: Shown): number => (f.description?.declares.isotropic === true ? 0 : wi.value.phi);
+const azimuth = (f: Shown): number => (f.description?.declares.isotropic === true ? 0 : paced.wi.value.phi);
 
 /** The batch of the direction of incidence alone. */
 const HERE = "here";
@@ -49,9 +50,9 @@ const albedos = new Live("albedo", () => {
     return whole.get(f.id) === subject ? BATCHES : BATCHES.slice(0, 1);
   };
   const wish = (f: Shown, name: string, thetas: number[]) => ({ key: `${f.id}/${name}`, shown: f, request: { function: f.text, thetas, phi: azimuth(f) } });
-  const wishes = visible.value.map((f) => batches(f).map((thetas, k) => wish(f, String(k), thetas)));
+  const wishes = paced.functions.value.map((f) => batches(f).map((thetas, k) => wish(f, String(k), thetas)));
   // The value that is written must be that of its angle, not one between two others.
-  const exact = calm ? visible.value.map((f) => wish(f, HERE, [wi.value.theta])) : [];
+  const exact = calm ? paced.functions.value.map((f) => wish(f, HERE, [paced.wi.value.theta])) : [];
   // The coarse ones of all functions first.
   return [...BATCHES.flatMap((_, k) => wishes.flatMap((w) => w[k] ?? [])), ...exact];
 });
@@ -67,7 +68,7 @@ interface Curve {
 
 /** The curves; what was answered for a function that has changed since is kept until the new one's coarse angles are there. */
 const curves = computed<Curve[]>(() =>
-  visible.value.flatMap((shown) => {
+  paced.functions.value.flatMap((shown) => {
     const answers = [HERE, ...BATCHES.keys()].map((name) => albedos.answers.value.get(`${shown.id}/${name}`)).filter((a) => a !== undefined);
     const like = (text: string, phi: number): Answer<"albedo">[] => answers.filter((a) => a.request.function === text && a.request.phi === phi);
     const ofNow = like(shown.text, azimuth(shown));
@@ -192,7 +193,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
         />
       </svg>
       {all.some((c) => c.error > 0.002) && <p class="view-note">exact to {number(Math.max(...all.map((c) => c.error)))}</p>}
-      <Complaints of={complaintsOf(albedos)} />
+      <Complaints of={complaintsOf(albedos, paced.functions.value)} />
     </>
   );
 }

@@ -7,11 +7,12 @@ import { grid, type Size } from "../plot/grid";
 import { continueRim } from "../plot/rim";
 import { beside, csvText, pngOfCanvas, type Row } from "../plot/save";
 import { picture } from "../plot/tone";
-import { exposure, factors, type Shown, type ToneMap, toneMap, visible, wi } from "../state";
+import { exposure, factors, type Shown, type ToneMap, toneMap, wi } from "../state";
 import { FactorSwitches } from "./factors";
 import { Complaints, Frame } from "./frame";
 import { Handle, setWi } from "./handle";
 import { type Answer, Live, seen, settled } from "./live";
+import { paced } from "./pace";
 import { Pictures } from "./pictures";
 import { complaintsOf } from "./reading";
 import { colour } from "./theme";
@@ -26,10 +27,10 @@ const side = signal(200);
 
 const balls = new Live("ball", () =>
   seen.ball.value
-    ? visible.value.map((f) => ({
+    ? paced.functions.value.map((f) => ({
         key: String(f.id),
         shown: f,
-        request: { function: f.text, light: wi.value, size: settled.value ? side.value : Math.min(side.value, COARSE), factors: factors.value },
+        request: { function: f.text, light: paced.wi.value, size: settled.value ? side.value : Math.min(side.value, COARSE), factors: factors.value },
         fine: settled.value,
       }))
     : null,
@@ -56,7 +57,7 @@ export function Ball(): JSX.Element {
       {(size) => (
         <div ref={body}>
           <Balls size={size} />
-          <Complaints of={complaintsOf(balls)} />
+          <Complaints of={complaintsOf(balls, paced.functions.value)} />
         </div>
       )}
     </Frame>
@@ -65,11 +66,11 @@ export function Ball(): JSX.Element {
 
 function Balls({ size }: { size: Size }): JSX.Element {
   useDrawn("ball", since.value);
-  const { cell } = grid(visible.value.length, size, 1);
+  const { cell } = grid(paced.functions.value.length, size, 1);
   useLayoutEffect(() => {
     side.value = Math.max(16, Math.min(FINEST, Math.round(cell.width * devicePixelRatio)));
   }, [cell.width]);
-  const pictures = visible.value.flatMap((f) => {
+  const pictures = paced.functions.value.flatMap((f) => {
     const answer = balls.answers.value.get(String(f.id));
     return answer === undefined ? [] : [painted(f, answer)];
   });
@@ -120,12 +121,12 @@ function painted(shown: Shown, answer: Answer<"ball">): { shown: Shown; width: n
     painters.set(answer, painter);
   }
   const { size } = answer.request;
-  return { shown, width: size, height: size, paint: painter.paint, words: `A ball of ${shown.text}, lit from ${wi.value.theta}° off the line of sight` };
+  return { shown, width: size, height: size, paint: painter.paint, words: `A ball of ${shown.text}, lit from ${paced.wi.value.theta}° off the line of sight` };
 }
 
 function table(): string | null {
   const rows: Row[] = [];
-  visible.value.forEach((f) => {
+  paced.functions.value.forEach((f) => {
     const answer = balls.answers.value.get(String(f.id));
     if (answer === undefined) return;
     const values = answer.arrays["values"]!;

@@ -1,9 +1,10 @@
 /** The Cartesian plot: f against the angle of reflection in the plane of incidence. */
 import { scaleLinear } from "d3-scale";
 import type { JSX } from "preact";
-import { useRef } from "preact/hooks";
+import { useMemo, useRef } from "preact/hooks";
 import { clamp, fromPlane, inPlane, STEEPEST } from "../plot/directions";
 import type { Size } from "../plot/grid";
+import { outline } from "../plot/outline";
 import { svgText } from "../plot/save";
 import { type Axis, number } from "../plot/scale";
 import { cosine, scale, wi, wo } from "../state";
@@ -46,8 +47,9 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
   const angleAt = (px: number): number => clamp(x.invert(px), -end, end);
   const quantity = cosine.value ? "f cos θr" : "f";
   const light = x(-wi.value.theta);
-  const step = width < 420 ? end / 3 : end / 6;
-  const angles = Array.from({ length: Math.round((2 * end) / step) + 1 }, (_, k) => -end + k * step);
+  // The same elements while the axes are the same: nothing of them is looked at when only curves change.
+  const ticks = useMemo(() => <Ticks {...{ axis, y, left: LEFT, right: width - RIGHT }} />, [axis, width, height]);
+  const grid = useMemo(() => <Angles {...{ x, top, bottom, end, width }} />, [width, height, end]);
   const kind = scale.value === "log" ? ", logarithmic" : scale.value === "cube-root" ? ", cube root" : "";
   return (
     <>
@@ -68,15 +70,8 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
           setWo(fromPlane(wi.value, angleAt(event.clientX - event.currentTarget.getBoundingClientRect().left)));
         }}
       >
-        <Ticks {...{ axis, y, left: LEFT, right: width - RIGHT }} />
-        {angles.map((angle) => (
-          <g key={angle}>
-            <line class="grid" x1={x(angle)} x2={x(angle)} y1={top} y2={bottom + 4} />
-            <text class="tick" x={x(angle)} y={bottom + 12}>
-              {`${angle}°`.replace("-", "−")}
-            </text>
-          </g>
-        ))}
+        {ticks}
+        {grid}
         <line class="horizon" x1={LEFT} x2={width - RIGHT} y1={bottom} y2={bottom} />
         <text class="axis-name" x={width - RIGHT} y={height - 8} text-anchor="end">
           angle of reflection θr
@@ -122,6 +117,24 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
   );
 }
 
+/** The angles along the horizontal axis with their lines. */
+function Angles({ x, top, bottom, end, width }: { x: (angle: number) => number; top: number; bottom: number; end: number; width: number }): JSX.Element {
+  const step = width < 420 ? end / 3 : end / 6;
+  const angles = Array.from({ length: Math.round((2 * end) / step) + 1 }, (_, k) => -end + k * step);
+  return (
+    <g>
+      {angles.map((angle) => (
+        <g key={angle}>
+          <line class="grid" x1={x(angle)} x2={x(angle)} y1={top} y2={bottom + 4} />
+          <text class="tick" x={x(angle)} y={bottom + 12}>
+            {`${angle}°`.replace("-", "−")}
+          </text>
+        </g>
+      ))}
+    </g>
+  );
+}
+
 /** The values of a vertical axis with their lines. */
 export function Ticks({ axis, y, left, right }: { axis: Axis; y: (value: number) => number; left: number; right: number }): JSX.Element {
   let last = Infinity;
@@ -147,18 +160,9 @@ export function Ticks({ axis, y, left, right }: { axis: Axis; y: (value: number)
 }
 
 function path(line: Line, x: (angle: number) => number, y: (value: number) => number): string {
-  let text = "";
-  let open = false;
-  for (let k = 0; k < line.angles.length; k += 1) {
-    const value = line.values[k]!;
-    if (!Number.isFinite(value)) {
-      open = false;
-      continue;
-    }
-    text += `${open ? "L" : "M"}${x(line.angles[k]!).toFixed(1)} ${y(value).toFixed(1)}`;
-    open = true;
-  }
-  return text;
+  const xs = Float64Array.from(line.angles, x);
+  const ys = Float64Array.from(line.values, (value) => (Number.isFinite(value) ? y(value) : NaN));
+  return outline(xs, ys);
 }
 
 interface Places {

@@ -9,12 +9,13 @@ import type { Size } from "../plot/grid";
 import { continueRim } from "../plot/rim";
 import { beside, csvText, pngOfCanvas } from "../plot/save";
 import { degrees, number, roundUp } from "../plot/scale";
-import { channel, cosine, difference, phiD, type Shown, visible, wi, wo } from "../state";
+import { type Channel, channel, cosine, difference, phiD, type Shown, wi, wo } from "../state";
 import { Bar, BAR } from "./bar";
 import { Complaints, Frame } from "./frame";
 import { Handle, setWi, setWo } from "./handle";
 import { label } from "./label";
 import { type Answer, Live, seen, settled } from "./live";
+import { paced } from "./pace";
 import { Pixels } from "./pictures";
 import { complaintsOf } from "./reading";
 import { slices } from "./slice";
@@ -29,7 +30,7 @@ const LAST = 89.9;
 
 /** The two that are compared: those that were chosen, or the first two that are shown. */
 const pair = computed<[Shown, Shown] | null>(() => {
-  const all = visible.value;
+  const all = paced.functions.value;
   const chosen = difference.value?.map((id) => all.find((f) => f.id === id)) ?? [];
   const [a = all[0], b = all.find((f) => f.id !== a?.id)] = chosen;
   return a === undefined || b === undefined || a.id === b.id ? null : [a, b];
@@ -40,7 +41,7 @@ const hemispheres = new Live("hemisphere", () =>
     ? (pair.value ?? []).map((f) => ({
         key: String(f.id),
         shown: f,
-        request: { function: f.text, wi: wi.value, size: settled.value ? FINE : COARSE, cosine: cosine.value },
+        request: { function: f.text, wi: paced.wi.value, size: settled.value ? FINE : COARSE, cosine: cosine.value },
         fine: settled.value,
       }))
     : null,
@@ -54,28 +55,41 @@ interface Field {
   largest: number;
 }
 
-function field(a: Float32Array, b: Float32Array, side: number): Field {
+function field(a: Float32Array, b: Float32Array, side: number, which: Channel): Field {
   const values = new Float32Array(side * side);
-  let largest = -1;
+  let [largest, size] = [-1, -1];
   for (let k = 0; k < values.length; k += 1) {
-    const [x, y] = [channelOf(channel.value, a, 3 * k), channelOf(channel.value, b, 3 * k)];
+    const x = channelOf(which, a, 3 * k);
+    const y = channelOf(which, b, 3 * k);
     const most = Math.max(Math.abs(x), Math.abs(y));
-    values[k] = most === 0 ? 0 : (y - x) / most;
-    if (Number.isFinite(values[k]!) && (largest < 0 || Math.abs(values[k]!) > Math.abs(values[largest]!))) largest = k;
+    const share = most === 0 ? 0 : (y - x) / most;
+    values[k] = share;
+    if (Math.abs(share) > size && Number.isFinite(share)) [largest, size] = [k, Math.abs(share)];
   }
   return { side, values, largest };
 }
+
+/** A field that is made anew only when one of the two answers is another: each of the two views' signals changes more often than that. */
+function kept(): (a: Float32Array, b: Float32Array, side: number) => Field {
+  let last: { a: Float32Array; b: Float32Array; which: Channel; field: Field } | null = null;
+  return (a, b, side) => {
+    const which = channel.value;
+    if (last?.a !== a || last.b !== b || last.which !== which) last = { a, b, which, field: field(a, b, side, which) };
+    return last.field;
+  };
+}
+const [overSphere, overSlice] = [kept(), kept()];
 
 const answers = <K extends Operation>(live: Live<K>): (Answer<K> | undefined)[] => (pair.value ?? []).map((f) => live.answers.value.get(String(f.id)));
 
 const sphere = computed<Field | null>(() => {
   const [a, b] = answers(hemispheres);
-  return a && b && a.request.size === b.request.size ? field(a.arrays["values"]!, b.arrays["values"]!, a.request.size) : null;
+  return a && b && a.request.size === b.request.size ? overSphere(a.arrays["values"]!, b.arrays["values"]!, a.request.size) : null;
 });
 
 const slice = computed<Field | null>(() => {
   const [a, b] = answers(slices);
-  return a && b && a.request.phi_d === b.request.phi_d ? field(a.arrays["values"]!, b.arrays["values"]!, a.answer.side) : null;
+  return a && b && a.request.phi_d === b.request.phi_d ? overSlice(a.arrays["values"]!, b.arrays["values"]!, a.answer.side) : null;
 });
 
 /** The difference at the end of the scale. */
@@ -125,7 +139,7 @@ export function Difference(): JSX.Element {
       {(size) => (
         <div ref={body}>
           {pair.value === null ? <p class="view-empty">Two functions that are shown are compared here.</p> : <Drawing size={size} pair={pair.value} />}
-          <Complaints of={[...complaintsOf(hemispheres), ...complaintsOf(slices)].slice(0, 2)} />
+          <Complaints of={[...complaintsOf(hemispheres, paced.functions.value), ...complaintsOf(slices, paced.functions.value)].slice(0, 2)} />
         </div>
       )}
     </Frame>
@@ -135,7 +149,7 @@ export function Difference(): JSX.Element {
 function Choice({ pair: [a, b] }: { pair: [Shown, Shown] }): JSX.Element {
   const select = (name: string, value: Shown, set: (id: number) => void): JSX.Element => (
     <select class={`view-select series-${value.colour}`} aria-label={name} value={value.id} onChange={(event) => set(Number(event.currentTarget.value))}>
-      {visible.value.map((f) => (
+      {paced.functions.value.map((f) => (
         <option key={f.id} value={f.id}>
           {label(f)}
         </option>

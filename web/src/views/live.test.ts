@@ -12,7 +12,7 @@ interface Call {
 const calls: Call[] = [];
 const dropped: string[] = [];
 
-vi.mock("./timings", () => ({ begun: { value: true }, pressed: () => false }));
+vi.mock("./timings", () => ({ begun: { value: true }, stir: () => undefined }));
 vi.mock("../engine/client", () => ({
   EngineError: class extends Error {
     constructor(readonly complaint: { message: string; help: string | null; place: null }) {
@@ -27,6 +27,7 @@ vi.mock("../engine/client", () => ({
 
 const { EngineError } = await import("../engine/client");
 const { Live } = await import("./live");
+const { companions } = await import("../functions");
 
 const settle = (): Promise<void> => new Promise((resolve) => setTimeout(resolve, 0));
 const shown = (id: number, text: string, revision = 0): Shown => ({ id, text, preset: null, description: null, complaint: null, colour: id, visible: true, revision });
@@ -39,6 +40,7 @@ const make = () => {
 
 beforeEach(() => {
   calls.splice(0);
+  companions.splice(0);
   dropped.splice(0);
 });
 
@@ -85,6 +87,23 @@ describe("answers that follow the state", () => {
     await settle();
     expect(live.complaints.value.size).toBe(0);
     expect(live.answers.value.get("1")?.answer).toBe("B");
+  });
+
+  test("is asked along with a change of the function, and not again when that is described", async () => {
+    const { live, wanted } = make();
+    wanted.value = [shown(1, "a")];
+    const late = calls[0]!;
+    const companion = companions.flatMap((of) => of(1) ?? []).at(-1)!;
+    expect(companion.along).toMatchObject({ operation: "evaluate", request: { function: "a" } });
+    companion.take("b", { answer: "B", arrays: {} } as never, 12.5);
+    wanted.value = [{ ...shown(1, "b"), changed: 12.5 }];
+    expect(calls).toHaveLength(1);
+    // The answer of what was asked before comes too late to be shown.
+    late.resolve({ answer: "A", arrays: {} });
+    await settle();
+    expect(live.answers.value.get("1")).toMatchObject({ answer: "B", since: 12.5 });
+    wanted.value = [];
+    expect(companions.map((of) => of(1)).filter((c) => c !== null)).toHaveLength(0);
   });
 
   test("a change is timed from when it was set, not from when the library had described it", async () => {

@@ -3,11 +3,12 @@
  *
  * What is wanted anew while a call runs replaces what waits, so a drag never queues up work; every answer that arrives is shown.
  */
-import { computed, effect, signal, untracked } from "@preact/signals";
+import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { engine, EngineError, type Pool } from "../engine/client";
-import type { Complaint, Operation, Reply, Requests } from "../engine/protocol";
+import type { Along, Complaint, Operation, Reply, Requests } from "../engine/protocol";
+import { companions } from "../functions";
 import { functions, phiD, scale, type Shown, turn, type ViewName, wi } from "../state";
-import { begun, pressed } from "./timings";
+import { begun, stir } from "./timings";
 
 /** Whether a view can be seen: not scrolled away nor behind a large one. Views that can't ask for nothing. */
 export const seen: Record<ViewName, { value: boolean }> = {
@@ -20,9 +21,6 @@ export const seen: Record<ViewName, { value: boolean }> = {
   preview: signal(false),
   difference: signal(false),
 };
-
-/** How often what comes second follows a drag on a slow machine, milliseconds. */
-const PAUSE = 250;
 
 /** How long nothing may change until pictures are made as fine as they can be shown, milliseconds. */
 const CALM = 300;
@@ -57,11 +55,12 @@ export class Live<K extends Operation> {
   readonly answers = signal<ReadonlyMap<string, Answer<K>>>(new Map());
   readonly complaints = signal<ReadonlyMap<string, Complaint>>(new Map());
   private readonly asked = new Map<string, { text: string; changed: number | undefined }>();
-  /** Whether it comes after the plots: from another worker, and less often where they would suffer. */
+  /** Counts what was asked; an older answer never takes the place of a newer one. */
+  private turn = 0;
+  private readonly shown = new Map<string, number>();
+  /** Whether it comes after the plots, from another worker. */
   private readonly second: boolean;
   private readonly how: { pool: Pool; early: boolean };
-  private later = 0;
-  private followed = 0;
 
   /** `wanted` reads the state; null while nobody looks, and then nothing changes. */
   constructor(
@@ -74,19 +73,28 @@ export class Live<K extends Operation> {
     effect(() => {
       if (this.second && !begun.value) return;
       const wishes = wanted();
-      clearTimeout(this.later);
-      if (wishes !== null) untracked(() => this.take(wishes));
+      if (wishes !== null) untracked(() => this.follow(wishes));
     });
+    if (!this.second) companions.push((id) => this.along(untracked(wanted)?.find((wish) => wish.shown.id === id)));
   }
 
-  private take(wishes: Wish<K>[]): void {
+  /** The same question of what the function becomes. */
+  private along(wish: Wish<K> | undefined) {
+    if (wish === undefined) return null;
+    const { key, request, shown } = wish;
+    const turn = ++this.turn;
+    return {
+      along: { operation: this.operation, request } as Along,
+      take: (text: string, answer: Reply | EngineError, changed: number): void => {
+        const asked = { ...request, function: text };
+        this.asked.set(key, { text: wording(shown, asked), changed });
+        this.show(key, turn, asked, answer as Reply<K> | EngineError, changed);
+      },
+    };
+  }
+
+  private follow(wishes: Wish<K>[]): void {
     const since = performance.now();
-    if (!this.second || !pressed() || wishes.some((w) => w.fine === true) || since - this.followed > PAUSE) this.follow(wishes, since);
-    else this.later = setTimeout(() => this.follow(wishes, since), PAUSE - (since - this.followed));
-  }
-
-  private follow(wishes: Wish<K>[], since: number): void {
-    this.followed = performance.now();
     const keys = new Set(wishes.map((w) => w.key));
     const gone = [...this.asked.keys()].filter((key) => !keys.has(key));
     if (gone.length > 0) {
@@ -98,8 +106,8 @@ export class Live<K extends Operation> {
       this.complaints.value = without(this.complaints.value, gone);
     }
     for (const wish of wishes) {
-      const { changed, revision } = wish.shown;
-      const text = `${revision} ${JSON.stringify(wish.request)}`;
+      const { changed } = wish.shown;
+      const text = wording(wish.shown, wish.request);
       const before = this.asked.get(wish.key);
       if (before?.text === text) continue;
       this.asked.set(wish.key, { text, changed });
@@ -110,19 +118,31 @@ export class Live<K extends Operation> {
   }
 
   private async ask({ key, request }: Wish<K>, since: number): Promise<void> {
-    try {
-      const reply = await engine.ask(this.operation, request, { ...this.how, key: `${this.operation}/${key}/` });
-      if (reply === null || !this.asked.has(key)) return;
-      if (this.complaints.value.has(key)) this.complaints.value = without(this.complaints.value, [key]);
-      this.answers.value = new Map(this.answers.value).set(key, { ...reply, request, since });
-    } catch (error) {
-      if (!this.asked.has(key)) return;
-      const complaint = error instanceof EngineError ? error.complaint : { message: String(error), help: null, place: null };
-      this.complaints.value = new Map(this.complaints.value).set(key, complaint);
-      this.answers.value = without(this.answers.value, [key]);
-    }
+    const turn = ++this.turn;
+    if (this.second) stir();
+    const answer = await engine.ask(this.operation, request, { ...this.how, key: `${this.operation}/${key}/` }).catch((error: unknown) => error);
+    if (this.second) stir();
+    if (answer !== null) this.show(key, turn, request, answer as Reply<K> | Error, since);
+  }
+
+  private show(key: string, turn: number, request: Requests[K]["request"], answer: Reply<K> | Error, since: number): void {
+    if (!this.asked.has(key) || turn < (this.shown.get(key) ?? 0)) return;
+    this.shown.set(key, turn);
+    batch(() => {
+      if (answer instanceof Error) {
+        const complaint = answer instanceof EngineError ? answer.complaint : { message: String(answer), help: null, place: null };
+        this.complaints.value = new Map(this.complaints.value).set(key, complaint);
+        this.answers.value = without(this.answers.value, [key]);
+      } else {
+        this.complaints.value = without(this.complaints.value, [key]);
+        this.answers.value = new Map(this.answers.value).set(key, { answer: answer.answer, arrays: answer.arrays, request, since });
+      }
+    });
   }
 }
+
+/** What tells one question from another: a file behind the function may have changed too. */
+const wording = ({ revision }: Shown, request: unknown): string => `${revision} ${JSON.stringify(request)}`;
 
 function without<V>(map: ReadonlyMap<string, V>, keys: string[]): ReadonlyMap<string, V> {
   if (!keys.some((key) => map.has(key))) return map;

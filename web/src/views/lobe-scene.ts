@@ -4,6 +4,7 @@ import {
   BufferGeometry,
   CircleGeometry,
   Color,
+  ColorManagement,
   ConeGeometry,
   CylinderGeometry,
   DoubleSide,
@@ -12,6 +13,7 @@ import {
   LineBasicMaterial,
   LineDashedMaterial,
   LineLoop,
+  LinearSRGBColorSpace,
   LineSegments,
   type Material,
   Mesh,
@@ -31,7 +33,11 @@ import { mirrored, toAngles, toVector } from "../plot/directions";
 import type { Axis } from "../plot/scale";
 import { srgb8 } from "../plot/tone";
 import type { Channel } from "../state";
+import { Film } from "./lobe-film";
 import { lobeMaterial, setContours, setOpacity } from "./lobe-material";
+
+// Colours are those of the style sheet, from the attribute to the pixel: nothing here is light that adds up.
+ColorManagement.enabled = false;
 
 /** How far out the light and the viewer are, where the rim of the axis is at 1. */
 export const REACH = 1.22;
@@ -75,12 +81,16 @@ export class LobeScene {
   private readonly ray = new Raycaster();
   private readonly inks = new Inks();
   private readonly skin = lobeMaterial();
+  private readonly film: Film;
   private width = 1;
   private height = 1;
   private waiting = false;
+  /** A frame is being drawn, and whether another one is wanted after it. */
+  private drawing = false;
+  private again = false;
   private gone = false;
   private shown = true;
-  /** When the last frame was begun, and by how much it held up the next: without a graphics card a frame may take a tenth of a second. */
+  /** When the last frame was begun, and how long it took beyond a usual one: without a graphics card it may be a tenth of a second. */
   private last = 0;
   private cost = 0;
   /** Of the camera about the normal, and above the surface, radians. */
@@ -93,7 +103,9 @@ export class LobeScene {
     readonly canvas: HTMLCanvasElement,
     private readonly drawn: () => void,
   ) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "low-power" });
+    this.renderer = new WebGLRenderer({ canvas, antialias: false, alpha: true, powerPreference: "low-power" });
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
+    this.film = new Film(this.renderer);
     this.scene.add(this.stage, this.lobes, this.light, this.viewer);
     this.camera.up.set(0, 0, 1);
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
@@ -104,6 +116,7 @@ export class LobeScene {
     for (const group of [this.stage, this.lobes, this.light, this.viewer]) empty(group);
     this.inks.dispose();
     this.skin.dispose();
+    this.film.dispose();
     this.renderer.dispose();
   }
 
@@ -113,6 +126,7 @@ export class LobeScene {
     // More would cost time and show nothing.
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
+    this.film.resize(this.canvas.width, this.canvas.height);
     this.camera.aspect = width / height;
     this.invalidate();
   }
@@ -210,6 +224,10 @@ export class LobeScene {
   /** Draws in the next frame; where drawing is slow, not so often that everything else comes to a halt. */
   invalidate(): void {
     if (this.waiting || !this.shown) return;
+    if (this.drawing) {
+      this.again = true;
+      return;
+    }
     this.waiting = true;
     const wait = this.last + Math.min(4 * this.cost, LONGEST) - performance.now();
     if (wait > 0) setTimeout(() => requestAnimationFrame(() => this.draw()), wait);
@@ -221,10 +239,19 @@ export class LobeScene {
     if (this.gone) return;
     const start = performance.now();
     this.last = start;
-    this.render();
-    this.drawn();
-    // The next frame comes when this one has been dealt with: what it is late is what this one cost.
-    requestAnimationFrame(() => (this.cost = 0.5 * this.cost + 0.5 * Math.max(0, performance.now() - start - FRAME)));
+    this.expose();
+    this.drawing = true;
+    this.film.whenDone(() => {
+      this.drawing = false;
+      if (this.gone) return;
+      this.film.show();
+      this.drawn();
+      this.cost = 0.5 * this.cost + 0.5 * Math.max(0, performance.now() - start - FRAME);
+      if (this.again) {
+        this.again = false;
+        this.invalidate();
+      }
+    });
   }
 
   /** Where a point is on the view; after `render`. */
@@ -250,6 +277,11 @@ export class LobeScene {
 
   /** Draws now, for pictures that are saved. */
   render(): void {
+    this.expose();
+    this.film.show();
+  }
+
+  private expose(): void {
     const narrow = Math.min(1, this.camera.aspect * 0.92);
     const distance = 1.36 / Math.sin((this.camera.fov * Math.PI) / 360) / narrow / this.zoom;
     const c = Math.cos(this.elevation);
@@ -257,7 +289,7 @@ export class LobeScene {
     this.camera.lookAt(0, 0, 0.42);
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
-    this.renderer.render(this.scene, this.camera);
+    this.film.expose(this.scene, this.camera);
   }
 }
 
@@ -302,7 +334,7 @@ function surface({ colour, directions, values, triangles }: Part, axis: Axis, ch
   const count = directions.length / 3;
   const positions = new Float32Array(3 * count);
   const colours = new Float32Array(3 * count);
-  const own = new Color(colour).convertLinearToSRGB();
+  const own = new Color(colour);
   for (let k = 0; k < count; k += 1) {
     const value = channelOf(channel, values, 3 * k);
     const radius = Number.isFinite(value) ? axis.position(value) : 0;

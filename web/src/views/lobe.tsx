@@ -8,26 +8,35 @@ import { nudged, STEEPEST, toVector } from "../plot/directions";
 import type { Size } from "../plot/grid";
 import { beside, csvText, pngOfCanvas, type Row } from "../plot/save";
 import { type Axis, axis, degrees, number, type Tick } from "../plot/scale";
-import { channel, cosine, scale, visible, wi, wo } from "../state";
+import { channel, cosine, scale, type Shown, wi, wo } from "../state";
 import { Complaints, Frame } from "./frame";
 import { follow, setWi, setWo } from "./handle";
 import { Live, seen, settled } from "./live";
 import type { Colours, LobeScene, Part } from "./lobe-scene";
+import { paced } from "./pace";
 import { complaintsOf } from "./reading";
 import { colour, theme } from "./theme";
-import { begun, drawn } from "./timings";
+import { begun, drawn, stir } from "./timings";
 import "./lobe.css";
 
 const lobes = new Live("lobe", () =>
   seen.lobe.value
-    ? visible.value.map((f) => ({
+    ? paced.functions.value.map((f) => ({
         key: String(f.id),
         shown: f,
-        request: { function: f.text, wi: wi.value, scale: scale.value, cosine: cosine.value, quick: !settled.value },
+        request: { function: f.text, wi: paced.wi.value, scale: scale.value, cosine: cosine.value, quick: !settled.value },
         fine: settled.value,
       }))
     : null,
 );
+
+/** Whose lobes there are, in which colours: surfaces are made anew for nothing else of the functions. */
+const cast = computed<Shown[]>((): Shown[] => {
+  const now = paced.functions.value;
+  const same = now.length === lastCast.length && now.every((f, k) => f.id === lastCast[k]!.id && f.colour === lastCast[k]!.colour);
+  return same ? lastCast : (lastCast = now);
+});
+let lastCast: Shown[] = [];
 
 /** The axis of the radius: logarithmic ones begin where nearly all of the values are above. */
 const radial = computed<Axis>(() => {
@@ -55,7 +64,7 @@ const colours = (): Colours => ({
 
 function table(): string | null {
   const rows: Row[] = [];
-  visible.value.forEach((f) => {
+  paced.functions.value.forEach((f) => {
     const { directions, values } = lobes.answers.value.get(String(f.id))?.arrays ?? {};
     for (let k = 0; k + 2 < (directions?.length ?? 0); k += 3) rows.push([f.text, ...directions!.subarray(k, k + 3), ...values!.subarray(k, k + 3)]);
   });
@@ -103,6 +112,7 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
           place(made, overlay.current!, REACH);
           if (newest > 0) drawn("lobe", newest);
           newest = 0;
+          stir();
         });
         scene.current = made;
         stops.push(
@@ -122,7 +132,7 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
           }),
           effect(() => {
             theme.value;
-            const parts = visible.value.flatMap((f): Part[] => {
+            const parts = cast.value.flatMap((f): Part[] => {
               const answer = lobes.answers.value.get(String(f.id));
               if (answer === undefined) return [];
               newest = Math.max(newest, answer.since);
@@ -161,14 +171,14 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
           {problem}
         </p>
       )}
-      <Complaints of={complaintsOf(lobes)} />
+      <Complaints of={complaintsOf(lobes, paced.functions.value)} />
     </>
   );
 }
 
 /** The names of axes, values and spikes; `place` puts them where they belong. */
 function Labels(): JSX.Element {
-  const spikes = visible.value.flatMap((f) => {
+  const spikes = paced.functions.value.flatMap((f) => {
     const { spikes } = lobes.answers.value.get(String(f.id))?.arrays ?? {};
     return Array.from({ length: Math.floor((spikes?.length ?? 0) / 6) }, (_, k) => ({ look: `series-${f.colour}`, at: [...spikes!.subarray(6 * k, 6 * k + 3)], share: channelOf(channel.value, spikes!, 6 * k + 3) }));
   });

@@ -1,8 +1,9 @@
 /** The polar plot: lobes in the plane of incidence. */
 import type { JSX } from "preact";
-import { useRef } from "preact/hooks";
+import { useMemo, useRef } from "preact/hooks";
 import { angleOnPolar, clamp, fromPlane, inPlane, onPolar, STEEPEST } from "../plot/directions";
 import type { Size } from "../plot/grid";
+import { outline } from "../plot/outline";
 import { svgText } from "../plot/save";
 import { type Axis, number } from "../plot/scale";
 import { channel, cosine, scale, wi, wo } from "../state";
@@ -48,6 +49,9 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
     return [centre[0] + x, centre[1] + y];
   };
   const angleAt = (x: number, y: number): number => clamp(angleOnPolar(x - centre[0], y - centre[1]), -end, end);
+  // The same elements while the axis is the same: nothing of them is looked at when only curves change.
+  const grid = useMemo(() => <Grid {...{ axis, centre, radius, end }} />, [axis, width, height, end]);
+  const values = useMemo(() => <Values {...{ axis, centre, radius, below }} />, [axis, width, height, end]);
   const light = at2(-wi.value.theta, radius);
   const lightIn = at2(-wi.value.theta, radius - 26);
   const quantity = `${cosine.value ? "f cos θr" : "f"} in sr⁻¹`;
@@ -73,7 +77,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
           setWo(fromPlane(wi.value, angleAt(event.clientX - box.left, event.clientY - box.top)));
         }}
       >
-        <Grid {...{ axis, centre, radius, end }} />
+        {grid}
         <g class="light-ray">
           <line class="ray-dim" x1={centre[0]} y1={centre[1]} x2={lightIn[0]} y2={lightIn[1]} />
           <line class="ray" x1={light[0]} y1={light[1]} x2={lightIn[0]} y2={lightIn[1]} />
@@ -95,7 +99,7 @@ function Drawing({ size: { width, height }, svg }: { size: Size; svg: { current:
             </g>
           )),
         )}
-        <Values {...{ axis, centre, radius, below }} />
+        {values}
         {looked.value !== null && Math.abs(looked.value) <= end && <Along class="crosshair aside" from={centre} to={at2(looked.value, radius)} />}
         <Viewed {...{ axis, centre, radius, end, angleAt }} />
         <Handle
@@ -196,19 +200,15 @@ function Values({ axis, centre, radius, below }: { axis: Axis; centre: Point; ra
 
 /** The outline of a lobe. A value that is not finite breaks it. */
 function Lobe({ line, axis, centre, radius, filled }: { line: Line; axis: Axis; centre: Point; radius: number; filled: boolean }): JSX.Element {
-  let path = "";
-  let open = false;
-  for (let k = 0; k < line.angles.length; k += 1) {
+  const xs = new Float64Array(line.angles.length);
+  const ys = new Float64Array(line.angles.length);
+  for (let k = 0; k < xs.length; k += 1) {
     const value = line.values[k]!;
-    if (!Number.isFinite(value)) {
-      open = false;
-      continue;
-    }
-    const [x, y] = onPolar(line.angles[k]!, radius * axis.position(value));
-    path += `${open ? "L" : "M"}${(centre[0] + x).toFixed(1)} ${(centre[1] + y).toFixed(1)}`;
-    open = true;
+    const [x, y] = onPolar(line.angles[k]!, Number.isFinite(value) ? radius * axis.position(value) : NaN);
+    xs[k] = centre[0] + x;
+    ys[k] = centre[1] + y;
   }
-  return <path class={`curve ${line.look} ${filled ? "filled" : ""}`} d={path} stroke-dasharray={line.dash || undefined} />;
+  return <path class={`curve ${line.look} ${filled ? "filled" : ""}`} d={outline(xs, ys)} stroke-dasharray={line.dash || undefined} />;
 }
 
 /** The direction of view: a ray, its value on every curve, and a handle at the rim. */

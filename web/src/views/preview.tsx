@@ -7,11 +7,12 @@ import { fromDisc, nudged, onDisc, wrap } from "../plot/directions";
 import { grid, type Size } from "../plot/grid";
 import { beside, pngOfCanvas } from "../plot/save";
 import { picture } from "../plot/tone";
-import { exposure, factors, large, light, object, toneMap, turn, visible, wi } from "../state";
+import { exposure, factors, large, light, object, toneMap, turn, wi } from "../state";
 import { FactorSwitches } from "./factors";
 import { Complaints, Frame } from "./frame";
 import { follow, Handle, setWi } from "./handle";
 import { seen, settled } from "./live";
+import { paced } from "./pace";
 import { type Picture, Pictures } from "./pictures";
 import { type Film, Progress } from "./progress";
 import { colour } from "./theme";
@@ -51,7 +52,7 @@ effect(() => {
     return;
   }
   const point = light.value === "point";
-  const motifs = visible.value.map((f) => ({
+  const motifs = paced.functions.value.map((f) => ({
     key: `preview-${f.id}`,
     version: String(f.revision),
     changed: f.changed,
@@ -59,7 +60,7 @@ effect(() => {
       function: f.text,
       object: object.value,
       light: light.value,
-      direction: point ? wi.value : { theta: 0, phi: 0 },
+      direction: point ? paced.wi.value : { theta: 0, phi: 0 },
       turn: point ? 0 : turn.value,
       bounces: BOUNCES,
       factors: factors.value,
@@ -116,7 +117,7 @@ export function Preview(): JSX.Element {
 }
 
 function complaints(): { colour: number; message: string; help: string | null }[] {
-  return visible.value.flatMap((f) => {
+  return paced.functions.value.flatMap((f) => {
     const complaint = progress.complaints.value.get(`preview-${f.id}`);
     return complaint === undefined ? [] : [{ colour: f.colour, message: complaint.message, help: complaint.help }];
   });
@@ -127,13 +128,13 @@ function Rendered({ size }: { size: Size }): JSX.Element {
   useDrawn("preview", Math.max(0, ...[...films.values()].map((f) => f.since)));
   const aspect = ASPECT[object.value];
   const room = { width: size.width, height: size.height - 18 };
-  const { cell } = grid(visible.value.length, room, aspect);
+  const { cell } = grid(paced.functions.value.length, room, aspect);
   useLayoutEffect(() => {
     const density = Math.min(devicePixelRatio, Math.sqrt(MOST_PIXELS / Math.max(1, cell.width * cell.height)));
     const next = { width: Math.round(cell.width * density), height: Math.round(cell.height * density) };
     if (next.width > 8 && (next.width !== pixels.value.width || next.height !== pixels.value.height)) pixels.value = next;
   });
-  const pictures = visible.value.flatMap((f): Picture[] => {
+  const pictures = paced.functions.value.flatMap((f): Picture[] => {
     const film = films.get(`preview-${f.id}`);
     if (film === undefined) return [];
     return [{ shown: f, width: film.width, height: film.height, paint: painted(film), words: `${f.text}, rendered with ${film.samples} samples a pixel` }];

@@ -7,6 +7,7 @@ interface Call {
 }
 const calls: Call[] = [];
 
+vi.mock("./timings", () => ({ stir: () => undefined }));
 vi.mock("../engine/assets", () => ({ loadAssets: () => Promise.resolve(), SCENE: [] }));
 vi.mock("../engine/client", () => ({
   EngineError: class extends Error {

@@ -6,6 +6,7 @@ import { signal } from "@preact/signals";
 import { engine, EngineError } from "../engine/client";
 import { loadAssets, SCENE } from "../engine/assets";
 import type { Complaint, Requests } from "../engine/protocol";
+import { stir } from "./timings";
 
 /** What is pictured: a request but for the size and the samples. */
 export type Motif = Omit<Requests["render"]["request"], "width" | "height" | "first" | "count">;
@@ -122,7 +123,9 @@ export class Progress {
     try {
       await load(painting.motif);
       const start = performance.now();
+      stir();
       const reply = await engine.ask("render", { ...painting.motif, width, height, first, count }, { pool: "render", key: `${key}/${painting.generation}/${first}/${small}` });
+      stir();
       if (reply === null || this.paintings.get(key) !== painting) return;
       if (!small) painting.count = Math.max(1, Math.min(16, Math.round((CALL * count) / Math.max(1, performance.now() - start))));
       this.add(key, painting, { width, height, sums: reply.arrays["sums"]!, samples: count, rejected: reply.answer.rejected, since: painting.since }, small);

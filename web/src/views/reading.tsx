@@ -30,8 +30,8 @@ export function Reading({ place }: { place: "corner" | "inside" }): JSX.Element 
 }
 
 /** The complaints of functions that are shown. */
-export function complaintsOf<K extends Operation>(live: Live<K>): { colour: number; message: string; help: string | null }[] {
-  return visible.value.flatMap((f) => {
+export function complaintsOf<K extends Operation>(live: Live<K>, functions = visible.value): { colour: number; message: string; help: string | null }[] {
+  return functions.flatMap((f) => {
     for (const [key, complaint] of live.complaints.value) {
       if (key === String(f.id) || key.startsWith(`${f.id}/`)) return [{ colour: f.colour, message: complaint.message, help: complaint.help }];
     }

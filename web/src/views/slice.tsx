@@ -2,23 +2,24 @@
 import { computed, signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
-import { channelOf, ofValue } from "../plot/colours";
+import { channelOf, ofValue, paintValues } from "../plot/colours";
 import { clamp, fromHalfDifference, halfDifference } from "../plot/directions";
 import type { Size } from "../plot/grid";
 import { beside, csvText, pngOfCanvas, type Row } from "../plot/save";
 import { type Axis, axis } from "../plot/scale";
-import { type Channel, channel, phiD, type Scale, visible, wi, wo } from "../state";
+import { type Channel, channel, phiD, type Scale, wi, wo } from "../state";
 import { Bar, BAR } from "./bar";
 import { Complaints, Frame } from "./frame";
 import { follow, setWi, setWo } from "./handle";
 import { type Answer, Live, seen } from "./live";
+import { paced } from "./pace";
 import { type Picture, Pictures } from "./pictures";
 import { complaintsOf } from "./reading";
 import { colour } from "./theme";
 import { useDrawn } from "./timings";
 
 export const slices = new Live("slice", () =>
-  seen.slice.value || seen.difference.value ? visible.value.map((f) => ({ key: String(f.id), shown: f, request: { function: f.text, phi_d: phiD.value } })) : null,
+  seen.slice.value || seen.difference.value ? paced.functions.value.map((f) => ({ key: String(f.id), shown: f, request: { function: f.text, phi_d: phiD.value } })) : null,
 );
 
 /** A slice spans more than any linear scale shows: it has a scale of its own. */
@@ -91,7 +92,7 @@ export function Slice(): JSX.Element {
       {(size) => (
         <div ref={body}>
           <Drawing size={size} />
-          <Complaints of={complaintsOf(slices)} />
+          <Complaints of={complaintsOf(slices, paced.functions.value)} />
         </div>
       )}
     </Frame>
@@ -101,7 +102,7 @@ export function Slice(): JSX.Element {
 function Drawing({ size }: { size: Size }): JSX.Element {
   useDrawn("slice", since.value);
   const scale = shownAxis.value;
-  const pictures = visible.value.flatMap((f): Picture[] => {
+  const pictures = paced.functions.value.flatMap((f): Picture[] => {
     const answer = slices.answers.value.get(String(f.id));
     if (answer === undefined) return [];
     const { side } = answer.answer;
@@ -132,16 +133,7 @@ function painted(answer: Answer<"slice">, scale: Axis): (out: Uint8ClampedArray)
   if (before?.axis === scale) return before.paint;
   const which = channel.value;
   const paint = (out: Uint8ClampedArray): void => {
-    const values = answer.arrays["values"]!;
-    for (let k = 0, o = 0; k + 2 < values.length; k += 3, o += 4) {
-      // A pair of which one direction lies below the horizon is left transparent.
-      if (Number.isNaN(values[k]!)) continue;
-      const [r, g, b] = ofValue(which, scale, values, k);
-      out[o] = r;
-      out[o + 1] = g;
-      out[o + 2] = b;
-      out[o + 3] = 255;
-    }
+    paintValues(out, which, scale, answer.arrays["values"]!);
   };
   painters.set(answer, { axis: scale, paint });
   return paint;
@@ -212,7 +204,7 @@ function angleApart(a: number, b: number): number {
 
 function table(): string | null {
   const rows: Row[] = [];
-  visible.value.forEach((f) => {
+  paced.functions.value.forEach((f) => {
     const answer = slices.answers.value.get(String(f.id));
     if (answer === undefined) return;
     const { side } = answer.answer;

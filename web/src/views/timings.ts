@@ -29,12 +29,13 @@ export function drawn(view: ViewName, since: number): void {
   const list = (timings[view] ??= []);
   list.push(timing);
   if (list.length > KEPT) list.shift();
+  const crowded = performance.now() - stirred < 100;
   // A task that is queued in a frame's callback runs after that frame.
   requestAnimationFrame(() =>
     setTimeout(() => {
       timing.painted = performance.now() - since;
       begun.value = true;
-      if (view === "polar" || view === "cartesian") latency = 0.7 * latency + 0.3 * timing.painted;
+      if ((view === "polar" || view === "cartesian") && crowded) latency = Math.max(0.95 * latency, timing.painted);
     }),
   );
 }
@@ -43,9 +44,16 @@ export function drawn(view: ViewName, since: number): void {
 export const begun = signal(false);
 setTimeout(() => (begun.value = true), 2000);
 
+/** How late plots were that were drawn while other views were at work: the worst of late. */
 let latency = 0;
+let stirred = -Infinity;
 
-/** Whether the plots come later than they should: then what else follows a drag must wait. */
+/** To be called when a view other than the plots begins or ends something. */
+export function stir(): void {
+  stirred = performance.now();
+}
+
+/** Whether the plots come later than they should while other views are at work: then these must wait. */
 export const pressed = (): boolean => latency > 33;
 
 /** To be called by a view with the time of the newest change that it draws; 0 where it draws nothing. */
