@@ -1,7 +1,7 @@
 /** For everybody: axe-core finds nothing serious, the keyboard is enough, 360 px are enough. */
 import AxeBuilder from "@axe-core/playwright";
 import type { Page } from "@playwright/test";
-import { expect, open, test } from "./support";
+import { angle, expect, open, test, view } from "./support";
 
 async function serious(page: Page): Promise<string[]> {
   const found = await new AxeBuilder({ page }).analyze();
@@ -45,6 +45,59 @@ test.describe("360 px wide", () => {
     await expect(page.getByRole("heading", { name: "How light is reflected" })).toBeVisible();
     expect(await wider()).toBeLessThanOrEqual(0);
   });
+});
+
+test("the keyboard chooses a cell of the slice and of the differences", async ({ page }) => {
+  await open(page, "#f=ggx:roughness=0.3&f=ggx:roughness=0.5&wi=45,180", ".slot[data-view=difference] canvas");
+  const fields = async (): Promise<number[]> => {
+    const values: number[] = [];
+    for (const name of ["Polar angle of incidence", "Azimuth of incidence", "Polar angle of view", "Azimuth of view"]) values.push(Number(await angle(page, name).inputValue()));
+    return values;
+  };
+  /** Half and difference angles of the pair in the fields, from the vectors' own geometry. */
+  const half = ([a, b, c, d]: number[]): [number, number] => {
+    const vector = (theta: number, phi: number): number[] => [Math.sin(theta) * Math.cos(phi), Math.sin(theta) * Math.sin(phi), Math.cos(theta)];
+    const [i, o] = [vector(rad(a!), rad(b!)), vector(rad(c!), rad(d!))];
+    const sum = i.map((x, k) => x + o[k]!);
+    const length = Math.hypot(...sum);
+    return [Math.acos(Math.min(1, sum[2]! / length)) / rad(1), Math.acos(Math.min(1, length / 2)) / rad(1)];
+  };
+  const rad = (x: number): number => (x * Math.PI) / 180;
+
+  // Nothing is looked at: the keys begin at the mirror's direction, θh = 0, θd = 45.
+  const cell = view(page, "slice").getByRole("slider", { name: /^Cell of the slice/ }).first();
+  await cell.focus();
+  await expect(cell).toHaveAttribute("aria-valuetext", /^θh 0\.0°, θd 45\.0°: f [\d.]+ per steradian$/);
+  const words = await cell.getAttribute("aria-valuetext");
+  await page.keyboard.press("Shift+ArrowRight");
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowDown");
+  await expect(cell).not.toHaveAttribute("aria-valuetext", words!);
+  const [thetaH, thetaD] = half(await fields());
+  expect(thetaH).toBeGreaterThan(10.2);
+  expect(thetaH).toBeLessThan(10.8);
+  expect(thetaD).toBeGreaterThan(44.2);
+  expect(thetaD).toBeLessThan(44.8);
+  expect(await page.evaluate(() => document.activeElement!.matches(":focus-visible"))).toBe(true);
+  // Home and End lead to the ends of the row, as far as both directions are above the horizon.
+  await page.keyboard.press("End");
+  expect(half(await fields())[0]).toBeGreaterThan(30);
+  for (const name of ["Polar angle of incidence", "Polar angle of view"]) expect(Number(await angle(page, name).inputValue())).toBeLessThanOrEqual(90);
+  await page.keyboard.press("Home");
+  expect(half(await fields())[0]).toBeLessThan(0.1);
+
+  const difference = view(page, "difference").getByRole("slider", { name: "Cell of the difference of the slices" });
+  await difference.focus();
+  await page.keyboard.press("Shift+ArrowUp");
+  await expect(difference).toHaveAttribute("aria-valuetext", /θd 54\.\d°: difference [+−]?[\d.]+ %$/);
+  expect(half(await fields())[1]).toBeCloseTo(54.4, 0);
+
+  await page.getByRole("button", { name: "Look at no direction" }).click();
+  const viewer = view(page, "difference").getByRole("slider", { name: "Direction of view" });
+  await viewer.focus();
+  await page.keyboard.press("Shift+ArrowUp");
+  await expect(viewer).toHaveAttribute("aria-valuetext", /difference/);
+  await expect(angle(page, "Polar angle of view")).toBeVisible();
 });
 
 test("the keyboard alone: a function is added, set and looked at", async ({ page }) => {

@@ -63,6 +63,51 @@ test("a touch moves it too", async ({ page }) => {
   expect(Number(await angle(page, "Polar angle of incidence").inputValue())).toBeLessThan(43);
 });
 
+test("the lobe is scaled by two fingers, the wheel and the keys, and turned by one finger", async ({ page }) => {
+  await open(page, "#f=ggx:roughness=0.4&wi=45,180&large=lobe", ".lobe-overlay:not(.empty)");
+  const overlay = page.locator(".lobe-overlay");
+  const label = (text: string) => overlay.locator(".lobe-label", { hasText: new RegExp(`^${text}$`) });
+  /** Pixels across the rim, when what was asked for is drawn. */
+  const width = async (): Promise<number> => {
+    const [a, b] = [(await label("0°").boundingBox())!, (await label("180°").boundingBox())!];
+    return Math.hypot(a.x - b.x, a.y - b.y);
+  };
+  const box = (await overlay.boundingBox())!;
+  const [x, y] = [box.x + box.width / 2, box.y + 0.8 * box.height];
+  const client = await page.context().newCDPSession(page);
+  const touch = (type: "touchStart" | "touchMove" | "touchEnd", points: [number, number][]): Promise<unknown> =>
+    client.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([dx, dy], id) => ({ x: x + dx, y: y + dy, id })) });
+  const pinch = async (from: number, to: number): Promise<void> => {
+    await touch("touchStart", [[-from, 0], [from, 0]]);
+    for (let k = 1; k <= 5; k += 1) await touch("touchMove", [[-from - (k / 5) * (to - from), 0], [from + (k / 5) * (to - from), 0]]);
+    await touch("touchEnd", []);
+  };
+  await expect.poll(width).toBeGreaterThan(100);
+  const first = await width();
+  await pinch(40, 60);
+  await expect.poll(width).toBeGreaterThan(1.3 * first);
+  expect(await width()).toBeLessThan(1.7 * first);
+  await pinch(60, 40);
+  await expect.poll(async () => Math.abs((await width()) - first)).toBeLessThan(0.05 * first);
+
+  // One finger turns it and scales nothing.
+  const before = await label("0°").getAttribute("style");
+  await touch("touchStart", [[0, 0]]);
+  for (const dx of [20, 40, 60]) await touch("touchMove", [[dx, 0]]);
+  await touch("touchEnd", []);
+  await expect(label("0°")).not.toHaveAttribute("style", before!);
+
+  const turned = await width();
+  await overlay.focus();
+  for (let k = 0; k < 3; k += 1) await page.keyboard.press("+");
+  await expect.poll(width).toBeGreaterThan(1.3 * turned);
+  for (let k = 0; k < 3; k += 1) await page.keyboard.press("-");
+  await expect.poll(async () => Math.abs((await width()) - turned)).toBeLessThan(0.05 * turned);
+  await page.mouse.move(x, y);
+  await page.mouse.wheel(0, -200);
+  await expect.poll(width).toBeGreaterThan(1.2 * turned);
+});
+
 test("scales, the cosine, exposure and the tone curve are set for all views", async ({ page }) => {
   await open(page, "#f=ggx:roughness=0.4&large=polar");
   const polar = view(page, "polar").locator("svg.plot");

@@ -42,7 +42,11 @@ export function Help(): JSX.Element | null {
           <dt>Tab, Shift Tab</dt>
           <dd>from control to control; every view’s light and viewer are controls</dd>
           <dt>Arrows</dt>
-          <dd>move a slider, or the direction that has the focus; with Shift in larger steps</dd>
+          <dd>move a slider, or the direction or the cell of a slice that has the focus; with Shift in larger steps</dd>
+          <dt>Home, End</dt>
+          <dd>to the normal and the horizon; in a slice to the ends of the row</dd>
+          <dt>+, −</dt>
+          <dd>scale the lobe, as pinching does</dd>
           <dt>Enter, Space</dt>
           <dd>press a button, choose what is marked in a list</dd>
           <dt>Escape</dt>

@@ -4,13 +4,14 @@ import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
 import type { Operation } from "../engine/protocol";
 import { channelOf, ofDifference } from "../plot/colours";
-import { clamp, fromDisc, fromHalfDifference, nudged, onDisc, STEEPEST } from "../plot/directions";
+import { clamp, fromDisc, mirrored, nudged, onDisc } from "../plot/directions";
 import type { Size } from "../plot/grid";
 import { continueRim } from "../plot/rim";
 import { beside, csvText, pngOfCanvas } from "../plot/save";
 import { degrees, number, roundUp } from "../plot/scale";
 import { type Channel, channel, cosine, difference, phiD, type Shown, wi, wo } from "../state";
 import { Bar, BAR } from "./bar";
+import { Cell, goTo, LAST } from "./cell";
 import { Complaints, Frame } from "./frame";
 import { Handle, setWi, setWo } from "./handle";
 import { label } from "./label";
@@ -25,8 +26,6 @@ import { useDrawn } from "./timings";
 /** Values along the diameter of the hemisphere: while something moves, and then. */
 const COARSE = 72;
 const FINE = 256;
-/** The angle of a slice's last node, degrees. */
-const LAST = 89.9;
 
 /** The two that are compared: those that were chosen, or the first two that are shown. */
 const pair = computed<[Shown, Shown] | null>(() => {
@@ -125,7 +124,7 @@ export function Difference(): JSX.Element {
     <Frame
       view="difference"
       title="Difference"
-      about="(f₂ − f₁) / max(|f₁|, |f₂|): red where the second function is larger, blue where it is smaller. Left: all directions of reflection, seen from above, the normal in the middle. Right: the slice of half and difference angles. Click to look at a direction."
+      about="(f₂ − f₁) / max(|f₁|, |f₂|): red where the second function is larger, blue where it is smaller. Left: all directions of reflection, seen from above, the normal in the middle. Right: the slice of half and difference angles. Click, or move the viewer or the cell with the arrow keys, to look at a direction."
       many
       controls={pair.value !== null && <Choice pair={pair.value} />}
       saves={{
@@ -175,7 +174,7 @@ function Drawing({ size, pair: [a, b] }: { size: Size; pair: [Shown, Shown] }): 
   return (
     <div class={`difference${upright ? " upright" : ""}`}>
       {sphere.value !== null && (
-        <Panel name="Reflection" round field={sphere.value} side={side} place={placeOnDisc(sphere.value)} over={<Disc side={side} />} words={`Difference of ${b.text} from ${a.text} over the directions of reflection`} />
+        <Panel name="Reflection" round field={sphere.value} side={side} place={placeOnDisc(sphere.value)} over={<Disc side={side} field={sphere.value} />} words={`Difference of ${b.text} from ${a.text} over the directions of reflection`} />
       )}
       {slice.value !== null && (
         <Panel name={`Slice, φd = ${phiD.value}°`} field={slice.value} side={side} place={placeOnSlice(slice.value)} over={<Edge side={side} field={slice.value} />} words={`Difference of ${b.text} from ${a.text} over the slice`} />
@@ -188,6 +187,8 @@ function Drawing({ size, pair: [a, b] }: { size: Size; pair: [Shown, Shown] }): 
     </div>
   );
 }
+
+const inWords = (share: number): string => (Number.isFinite(share) ? `difference ${percent(share)}` : "no value");
 
 const percent = (x: number): string => `${x > 0 ? "+" : ""}${number(100 * x, 2)} %`;
 
@@ -237,21 +238,22 @@ function placeOnSlice({ side, largest }: Field): Place | null {
   if (largest < 0) return null;
   const node = (k: number): number => (k * LAST) / (side - 1);
   const [thetaH, thetaD] = [node(largest % side), node(side - 1 - Math.floor(largest / side))];
-  const go = (): void => {
-    const both = fromHalfDifference(thetaH, thetaD, phiD.value, wi.value.phi - phiD.value);
-    if (both === null || both.wi.theta > STEEPEST) return;
-    setWi(both.wi);
-    setWo(both.wo);
-  };
-  return { words: `θh ${degrees(thetaH)}, θd ${degrees(thetaD)}`, go };
+  return { words: `θh ${degrees(thetaH)}, θd ${degrees(thetaD)}`, go: () => void goTo(thetaH, thetaD) };
 }
 
 /** The hemisphere's grid, with the directions of light and view. */
-function Disc({ side }: { side: number }): JSX.Element {
+function Disc({ side, field }: { side: number; field: Field }): JSX.Element {
   const half = side / 2;
   const at = (x: number, y: number): [number, number] => [x / half - 1, 1 - y / half];
   const put = (v: [number, number]): { x: number; y: number } => ({ x: half + half * v[0], y: half - half * v[1] });
-  const view = wo.value !== null && wo.value.theta <= 90 ? wo.value : null;
+  const given = wo.value !== null && wo.value.theta <= 90;
+  // With no direction of view the keys begin at the mirror's.
+  const view = given ? wo.value! : mirrored(wi.value);
+  const value = (): number => {
+    const [x, y] = onDisc("equidistant", view);
+    const pixel = (share: number): number => clamp(Math.floor(((share + 1) / 2) * field.side), 0, field.side - 1);
+    return field.values[pixel(-y) * field.side + pixel(x)]!;
+  };
   return (
     <svg
       class="over plot"
@@ -270,19 +272,19 @@ function Disc({ side }: { side: number }): JSX.Element {
         <circle key={t} class="over-grid" cx={half} cy={half} r={(t / 90) * half} />
       ))}
       <circle class="rim" cx={half} cy={half} r={half - 0.5} />
-      {view !== null && (
-        <Handle
-          which="viewer"
-          {...put(onDisc("equidistant", view))}
-          angles={view}
-          moved={(x, y) => setWo(fromDisc("equidistant", ...at(x, y), view.phi))}
-          keyed={(key, by) => {
-            const next = nudged(view, key, by, 90);
-            if (next !== null) setWo(next);
-            return next !== null;
-          }}
-        />
-      )}
+      <Handle
+        which="viewer"
+        unset={!given}
+        {...put(onDisc("equidistant", view))}
+        angles={view}
+        words={inWords(value())}
+        moved={(x, y) => setWo(fromDisc("equidistant", ...at(x, y), view.phi))}
+        keyed={(key, by) => {
+          const next = nudged(view, key, by, 90);
+          if (next !== null) setWo(next);
+          return next !== null;
+        }}
+      />
       <Handle
         which="light"
         {...put(onDisc("equidistant", wi.value))}
@@ -305,7 +307,8 @@ function Edge({ side, field }: { side: number; field: Field }): JSX.Element {
       viewBox={`0 0 ${side} ${side}`}
       width={side}
       height={side}
-      aria-hidden="true"
+      role="group"
+      aria-label="Half angle θh to the right, difference angle θd upwards"
       onClick={(event) => {
         const box = event.currentTarget.getBoundingClientRect();
         const node = (share: number): number => Math.round(clamp(share, 0, 1) * (field.side - 1));
@@ -320,6 +323,7 @@ function Edge({ side, field }: { side: number; field: Field }): JSX.Element {
       <text class="over-text" x={4} y={13}>
         θd ↑
       </text>
+      <Cell size={side} nodes={field.side} name="difference of the slices" read={(index) => inWords(field.values[index]!)} />
     </svg>
   );
 }

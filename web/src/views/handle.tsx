@@ -54,14 +54,18 @@ export interface HandleProps {
   keyed(key: string, by: { shift: boolean; alt: boolean }): boolean;
   /** Whether it is shown apart, as something that isn't in the plane of the drawing. */
   hollow?: boolean;
+  /** Whether there is no such direction yet: it is seen while it has the focus, and the keys begin here. */
+  unset?: boolean;
+  /** What is there, beside the angles. */
+  words?: string;
 }
 
-export function Handle({ which, x, y, angles, moved, keyed, hollow = false }: HandleProps): JSX.Element {
+export function Handle({ which, x, y, angles, moved, keyed, hollow = false, unset = false, words }: HandleProps): JSX.Element {
   const self = useRef<SVGGElement>(null);
   return (
     <g
       ref={self}
-      class={`handle handle-${which}${hollow ? " handle-hollow" : ""} aside`}
+      class={`handle handle-${which}${hollow ? " handle-hollow" : ""}${unset ? " handle-unset" : ""} aside`}
       transform={`translate(${x.toFixed(1)} ${y.toFixed(1)})`}
       tabindex={0}
       role="slider"
@@ -69,7 +73,7 @@ export function Handle({ which, x, y, angles, moved, keyed, hollow = false }: Ha
       aria-valuemin={0}
       aria-valuemax={which === "light" ? 89.5 : 180}
       aria-valuenow={Math.round(angles.theta * 100) / 100}
-      aria-valuetext={`θ ${degrees(angles.theta)}, φ ${degrees(angles.phi)}`}
+      aria-valuetext={`θ ${degrees(angles.theta)}, φ ${degrees(angles.phi)}${words === undefined ? "" : `: ${words}`}`}
       onPointerDown={(event) => follow(event, self.current!.ownerSVGElement!, moved)}
       onKeyDown={(event) => {
         if (event.ctrlKey || event.metaKey) return;

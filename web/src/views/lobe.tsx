@@ -12,6 +12,7 @@ import { channel, cosine, scale, type Shown, wi, wo } from "../state";
 import { Complaints, Frame } from "./frame";
 import { follow, setWi, setWo } from "./handle";
 import { Live, seen, settled } from "./live";
+import { gestures } from "./lobe-gestures";
 import type { Colours, LobeScene, Part } from "./lobe-scene";
 import { paced } from "./pace";
 import { complaintsOf } from "./reading";
@@ -77,7 +78,7 @@ export function Lobe(): JSX.Element {
     <Frame
       view="lobe"
       title="Lobe"
-      about="f over all directions, for light that comes along the arrow: the distance from the centre is the value. Drag the light; drag elsewhere to turn the view. Lines on the lobe are at the values of the rings."
+      about="f over all directions, for light that comes along the arrow: the distance from the centre is the value. Drag the light; drag elsewhere to turn the view, and pinch, or press + and −, to scale it. Lines on the lobe are at the values of the rings."
       saves={{
         png: () => {
           if (scene.current === null) return null;
@@ -153,12 +154,13 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
     };
   }, []);
 
+  useEffect(() => gestures(overlay.current!, () => scene.current), []);
   useEffect(() => scene.current?.resize(size.width, size.height), [there, size.width, size.height]);
 
   return (
     <>
       <canvas ref={canvas} class="lobe-canvas" />
-      <div ref={overlay} class={there ? "lobe-overlay" : "lobe-overlay empty"} tabIndex={0} role="group" aria-label="Lobe in space: arrow keys turn it, plus and minus scale it" onKeyDown={(e) => turnByKey(e, scene.current)} onPointerDown={(e) => turnByPointer(e, scene.current)} onWheel={(e) => zoomByWheel(e, scene.current)}>
+      <div ref={overlay} class={there ? "lobe-overlay" : "lobe-overlay empty"} tabIndex={0} role="group" aria-label="Lobe in space: arrow keys turn it, plus and minus scale it" onKeyDown={(e) => turnByKey(e, scene.current)} onWheel={(e) => zoomByWheel(e, scene.current)}>
         <Labels />
         <Knob which="light" scene={scene} />
         <Knob which="viewer" scene={scene} />
@@ -269,15 +271,6 @@ function Knob({ which, scene }: { which: "light" | "viewer"; scene: { current: L
       <span>{which === "light" ? "ωi" : "ωo"}</span>
     </div>
   );
-}
-
-function turnByPointer(event: PointerEvent & { currentTarget: HTMLElement }, scene: LobeScene | null): void {
-  if (scene === null) return;
-  let last: [number, number] | null = null;
-  follow(event, event.currentTarget, (x, y) => {
-    if (last !== null) scene.turn(-0.008 * (x - last[0]), 0.008 * (y - last[1]));
-    last = [x, y];
-  });
 }
 
 function turnByKey(event: KeyboardEvent & { currentTarget: HTMLElement }, scene: LobeScene | null): void {

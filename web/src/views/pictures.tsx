@@ -22,7 +22,7 @@ export interface PicturesProps {
   aspect: number;
   pictures: Picture[];
   /** What is drawn over a picture; `left` says whether it is the first of a row. */
-  over?: (cell: Size, left: boolean) => ComponentChildren;
+  over?: (cell: Size, left: boolean, index: number) => ComponentChildren;
   /** Room below each, pixels. */
   foot?: number;
   /** Whether they are discs. */
@@ -39,7 +39,7 @@ export function Pictures({ size, aspect, pictures, over, foot = 0, round = false
             {pictures.length > 1 && <Name shown={picture.shown} width={cell.width} />}
             <div class={round ? "picture-place round" : "picture-place"} style={{ width: `${cell.width}px`, height: `${cell.height}px` }}>
               <Pixels picture={picture} cell={cell} />
-              {over?.(cell, k % columns === 0)}
+              {over?.(cell, k % columns === 0, k)}
             </div>
           </figure>
         ))}

@@ -1,16 +1,18 @@
 /** The slice: f as a picture, by the angle θh of the half vector and the angle θd between it and the light (Rusinkiewicz 1998). */
 import { computed, signal } from "@preact/signals";
-import type { JSX } from "preact";
+import type { ComponentChildren, JSX } from "preact";
 import { useRef } from "preact/hooks";
 import { channelOf, ofValue, paintValues } from "../plot/colours";
-import { clamp, fromHalfDifference, halfDifference } from "../plot/directions";
+import { clamp } from "../plot/directions";
 import type { Size } from "../plot/grid";
 import { beside, csvText, pngOfCanvas, type Row } from "../plot/save";
-import { type Axis, axis } from "../plot/scale";
-import { type Channel, channel, phiD, type Scale, wi, wo } from "../state";
+import { type Axis, axis, number } from "../plot/scale";
+import { type Channel, channel, phiD, type Scale, type Shown } from "../state";
 import { Bar, BAR } from "./bar";
 import { Complaints, Frame } from "./frame";
-import { follow, setWi, setWo } from "./handle";
+import { Cell, goTo, LAST } from "./cell";
+import { follow } from "./handle";
+import { label } from "./label";
 import { type Answer, Live, seen } from "./live";
 import { paced } from "./pace";
 import { type Picture, Pictures } from "./pictures";
@@ -28,8 +30,6 @@ const kind = signal<Scale>("log");
 /** Room for the axes. */
 const LEFT = 40;
 const BELOW = 34;
-/** The angle of the last node, degrees. */
-const STEEPEST = 89.9;
 /** The share of the values that the scale holds; the few above it, at grazing angles, have the colour of its end. */
 const HELD = 0.98;
 
@@ -65,7 +65,7 @@ export function Slice(): JSX.Element {
     <Frame
       view="slice"
       title="Slice θh × θd"
-      about="f by the half angle θh (right) and the difference angle θd (up), as MERL’s materials are shown: highlights at the left, retro-reflection along the bottom, the Fresnel effect at the top left, grazing directions at the right and the top. Click to go to that pair of directions."
+      about="f by the half angle θh (right) and the difference angle θd (up), as MERL’s materials are shown: highlights at the left, retro-reflection along the bottom, the Fresnel effect at the top left, grazing directions at the right and the top. Click, or move the cell with the arrow keys, to go to that pair of directions."
       many
       controls={
         <>
@@ -114,7 +114,19 @@ function Drawing({ size }: { size: Size }): JSX.Element {
   return (
     <>
       <div class="slice-place" style={{ left: `${LEFT - 6}px`, right: `${BAR}px`, bottom: `${below === 0 ? 0 : below - 6}px` }}>
-        {pictures.length > 0 && <Pictures size={inner} aspect={1} pictures={pictures} foot={pictures.length > 1 ? 30 : 0} over={(cell, left) => <Axes cell={cell} single={pictures.length === 1} left={left} />} />}
+        {pictures.length > 0 && (
+          <Pictures
+            size={inner}
+            aspect={1}
+            pictures={pictures}
+            foot={pictures.length > 1 ? 30 : 0}
+            over={(cell, left, k) => (
+              <Axes cell={cell} single={pictures.length === 1} left={left}>
+                <Cell size={cell.width} nodes={pictures[k]!.width} name={pictures.length === 1 ? "slice" : `slice of ${label(pictures[k]!.shown)}`} read={(index) => inWords(pictures[k]!.shown, index)} />
+              </Axes>
+            )}
+          />
+        )}
       </div>
       {pictures.length > 0 && (
         <div class="bar-place" style={{ top: "22px" }}>
@@ -126,32 +138,33 @@ function Drawing({ size }: { size: Size }): JSX.Element {
   );
 }
 
-const painters = new WeakMap<Answer<"slice">, { axis: Axis; paint: (out: Uint8ClampedArray) => void }>();
+/** The value at a node. */
+function inWords(shown: Shown, index: number): string {
+  const values = slices.answers.value.get(String(shown.id))?.arrays["values"];
+  const value = values === undefined ? NaN : channelOf(channel.value, values, 3 * index);
+  return Number.isFinite(value) ? `f ${number(value)} per steradian` : "no value";
+}
+
+const painters = new WeakMap<Answer<"slice">, { axis: Axis; which: Channel; paint: (out: Uint8ClampedArray) => void }>();
 
 function painted(answer: Answer<"slice">, scale: Axis): (out: Uint8ClampedArray) => void {
   const before = painters.get(answer);
-  if (before?.axis === scale) return before.paint;
   const which = channel.value;
+  if (before?.axis === scale && before.which === which) return before.paint;
   const paint = (out: Uint8ClampedArray): void => {
     paintValues(out, which, scale, answer.arrays["values"]!);
   };
-  painters.set(answer, { axis: scale, paint });
+  painters.set(answer, { axis: scale, which, paint });
   return paint;
 }
 
-/** Angles along the edges, and where the present pair of directions is. */
-function Axes({ cell, single, left }: { cell: Size; single: boolean; left: boolean }): JSX.Element {
+/** Angles along the edges. */
+function Axes({ cell, single, left, children }: { cell: Size; single: boolean; left: boolean; children: ComponentChildren }): JSX.Element {
   const side = cell.width;
-  const at = (degrees: number): number => (clamp(degrees, 0, STEEPEST) / STEEPEST) * side;
+  const at = (degrees: number): number => (clamp(degrees, 0, LAST) / LAST) * side;
   const wide = single || side > 200;
   const steps = side > 170 ? [0, 15, 30, 45, 60, 75, 90] : [0, 30, 60, 90];
-  const go = (x: number, y: number): void => {
-    const pair = fromHalfDifference(clamp((x / side) * STEEPEST, 0, STEEPEST), clamp((1 - y / side) * STEEPEST, 0, STEEPEST), phiD.value, wi.value.phi - phiD.value);
-    if (pair === null) return;
-    setWi(pair.wi);
-    setWo(pair.wo);
-  };
-  const pair = wo.value === null ? null : halfDifference(wi.value, wo.value);
+  const go = (x: number, y: number): void => void goTo(clamp(x / side, 0, 1) * LAST, clamp(1 - y / side, 0, 1) * LAST);
   return (
     <svg
       class="over plot slice-axes"
@@ -191,15 +204,9 @@ function Axes({ cell, single, left }: { cell: Size; single: boolean; left: boole
           difference angle θd
         </text>
       )}
-      {pair !== null && (pair.thetaH < 0.1 || pair.thetaD < 0.1 || angleApart(pair.phiD, phiD.value) < 1) && <circle class="slice-mark" cx={at(pair.thetaH)} cy={side - at(pair.thetaD)} r={5} />}
+      {children}
     </svg>
   );
-}
-
-/** How far two φd are apart: they are the same after half a turn. */
-function angleApart(a: number, b: number): number {
-  const d = (((a - b) % 180) + 180) % 180;
-  return Math.min(d, 180 - d);
 }
 
 function table(): string | null {
@@ -211,7 +218,7 @@ function table(): string | null {
     const values = answer.arrays["values"]!;
     for (let k = 0; k < side * side; k += 1) {
       if (Number.isNaN(values[3 * k]!)) continue;
-      const node = (n: number): number => (n * STEEPEST) / (side - 1);
+      const node = (n: number): number => (n * LAST) / (side - 1);
       rows.push([f.text, node(k % side), node(side - 1 - Math.floor(k / side)), ...values.subarray(3 * k, 3 * k + 3)]);
     }
   });
