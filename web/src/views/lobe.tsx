@@ -226,8 +226,8 @@ function place(scene: LobeScene, overlay: HTMLElement, reach: number): void {
     const { at, ring, which } = element.dataset;
     if (at !== undefined) put(element, at.split(" ").map(Number));
     else if (ring !== undefined) {
-      // Between the spokes, about across the plane of incidence, on the side of the camera.
-      const phi = ((wi.value.phi + 105) * Math.PI) / 180;
+      // Midway between two named spokes, about across the plane of incidence, on the side of the camera.
+      const phi = ((90 * Math.round((wi.value.phi + 60) / 90) + 45) * Math.PI) / 180;
       const r = (Math.cos(scene.azimuth - phi) >= 0 ? 1 : -1) * Number(ring);
       put(element, [r * Math.cos(phi), r * Math.sin(phi), 0]);
     } else if (which !== undefined) {

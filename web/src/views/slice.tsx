@@ -30,7 +30,7 @@ const kind = signal<Scale>("log");
 /** Room for the axes. */
 const LEFT = 40;
 const BELOW = 34;
-/** The share of the values that the scale holds; the few above it, at grazing angles, have the colour of its end. */
+/** The share of the values below its end, and above its beginning, that the scale holds; the few others, at grazing angles, have the colours of its ends. */
 const HELD = 0.98;
 
 /** Each few of the values, without what is 0 or not finite, in order: enough for the ends of a scale. */
@@ -51,7 +51,7 @@ const shownAxis = computed<Axis>(() => {
   for (const { arrays } of slices.answers.value.values()) {
     const numbers = positive(arrays["values"]!, channel.value);
     if (numbers.length === 0) continue;
-    least = Math.min(least, numbers[0]!);
+    least = Math.min(least, numbers[Math.ceil((1 - HELD) * (numbers.length - 1))]!);
     most = Math.max(most, numbers[Math.floor(HELD * (numbers.length - 1))]!);
   }
   return axis(kind.value, least, most);
@@ -129,9 +129,9 @@ function Drawing({ size }: { size: Size }): JSX.Element {
         )}
       </div>
       {pictures.length > 0 && (
-        <div class="bar-place" style={{ top: "22px" }}>
+        <div class="bar-place" style={{ top: "25px" }}>
           <span class="bar-name">sr⁻¹</span>
-          <Bar height={barHeight - 8} name="f in sr⁻¹" ticks={scale.ticks} colourAt={(p) => ofValue(channel.value, scale, [scale.value(p), scale.value(p), scale.value(p)])} />
+          <Bar height={barHeight - 11} name="f in sr⁻¹" ticks={scale.ticks} colourAt={(p) => ofValue(channel.value, scale, [scale.value(p), scale.value(p), scale.value(p)])} />
         </div>
       )}
     </>
