@@ -55,18 +55,18 @@ function kept(before: Parameter[] | undefined, now: Parameter[]): Parameter[] {
   return now.map((parameter, k) => (before !== undefined && JSON.stringify(before[k]) === JSON.stringify(parameter) ? before[k]! : parameter));
 }
 
-type Asked = (along: Along[]) => Promise<Whole<"describe"> | Whole<"set"> | null>;
+type Question = (along: Along[]) => Promise<Whole<"describe"> | Whole<"set"> | null>;
 
 /** Whether the library understood; null if a newer request took this one's place. */
-async function settle(id: number, ask: Asked, preset: string | null): Promise<boolean | null> {
+async function settle(id: number, ask: Question, preset: string | null): Promise<boolean | null> {
   const changed = performance.now();
-  const with_ = companions.flatMap((companion) => companion(id) ?? []);
+  const asked = companions.flatMap((companion) => companion(id) ?? []);
   try {
-    const reply = await ask(with_.map((one) => one.along));
+    const reply = await ask(asked.map((one) => one.along));
     if (reply === null) return null;
     const description: Description = { ...reply.answer, parameters: kept(find(id)?.description?.parameters, reply.answer.parameters) };
     batch(() => {
-      with_.forEach((one, k) => one.take(description.text, reply.along[k]!, changed));
+      asked.forEach((one, k) => one.take(description.text, reply.along[k]!, changed));
       update(id, { text: description.text, preset, description, complaint: null, changed });
     });
     return true;

@@ -23,41 +23,46 @@ const files: Files = new Map();
 let module: WebAssembly.Module | null = null;
 let instance: Promise<Instance> | null = null;
 
-async function call(message: Extract<ToWorker, { kind: "call" }>): Promise<void> {
+function ready(): Promise<Instance> {
+  if (module === null) throw new Error("the worker was asked before it was started");
+  return (instance ??= Instance.make(module, files));
+}
+
+/** Either the library's own complaint, or what is known of a trap: that leaves the instance's memory in an unknown state, so the next call gets a new one. */
+function refusal(error: unknown, operation: string, running: Instance | null): { complaint: Complaint; lost: boolean } {
+  if (error instanceof LibraryError) return { complaint: error.complaint, lost: false };
+  instance = null;
+  const why = running?.lastWords() || (error instanceof Error ? error.message : String(error));
+  const complaint: Complaint = {
+    message: `the engine stopped in ‘${operation}’: ${why}`,
+    help: "it has been started again and nothing that you set is lost; please report this, with the permanent link",
+    place: null,
+  };
+  return { complaint, lost: true };
+}
+
+async function call({ id, operation, request, along }: Extract<ToWorker, { kind: "call" }>): Promise<void> {
   let running: Instance | null = null;
   try {
-    if (module === null) throw new Error("the worker was asked before it was started");
-    instance ??= Instance.make(module, files);
-    running = await instance;
-    const answered = running.call(message.operation, message.request);
-    const along: (Answered | { complaint: Complaint })[] = [];
-    for (const one of message.along) along.push(follow(running, one, answered.answer as Description));
-    const data = [answered, ...along].flatMap((a) => ("data" in a ? [a.data] : []));
-    scope.postMessage({ id: message.id, ...answered, along }, data);
+    running = await ready();
+    const answered = running.call(operation, request);
+    const followed: (Answered | { complaint: Complaint })[] = [];
+    for (const one of along) followed.push(await follow(one, (answered.answer as Description).text));
+    const data = [answered, ...followed].flatMap((a) => ("data" in a ? [a.data] : []));
+    scope.postMessage({ id, ...answered, along: followed }, data);
   } catch (error) {
-    if (error instanceof LibraryError) {
-      scope.postMessage({ id: message.id, complaint: error.complaint, lost: false }, []);
-      return;
-    }
-    // A trap leaves the instance's memory in an unknown state; the next call gets a new one.
-    instance = null;
-    const why = running?.lastWords() || (error instanceof Error ? error.message : String(error));
-    const complaint: Complaint = {
-      message: `the engine stopped in ‘${message.operation}’: ${why}`,
-      help: "it has been started again and nothing that you set is lost; please report this, with the permanent link",
-      place: null,
-    };
-    scope.postMessage({ id: message.id, complaint, lost: true }, []);
+    scope.postMessage({ id, ...refusal(error, operation, running) }, []);
   }
 }
 
 /** What was asked along is answered for itself: a function that can be described may have no curve. */
-function follow(running: Instance, { operation, request }: Along, { text }: Description): Answered | { complaint: Complaint } {
+async function follow({ operation, request }: Along, text: string): Promise<Answered | { complaint: Complaint }> {
+  let running: Instance | null = null;
   try {
+    running = await ready();
     return running.call(operation, { ...request, function: text });
   } catch (error) {
-    if (error instanceof LibraryError) return { complaint: error.complaint };
-    throw error;
+    return { complaint: refusal(error, operation, running).complaint };
   }
 }
 

@@ -1,7 +1,8 @@
 /**
  * Answers of the engine that follow the state: a view says what it wants, and finds what was answered last.
  *
- * What is wanted anew while a call runs replaces what waits, so a drag never queues up work; every answer that arrives is shown.
+ * What is wanted anew while a call runs replaces what waits, so a drag never queues up work; every answer that arrives is shown,
+ * unless a newer one was before it.
  */
 import { batch, computed, effect, signal, untracked } from "@preact/signals";
 import { engine, EngineError, type Pool } from "../engine/client";

@@ -41,6 +41,14 @@ export class Film {
     this.target.setSize(width, height);
   }
 
+  /** Compiles what the scene needs, beside everything else. */
+  async prepare(scene: Scene, camera: Camera): Promise<void> {
+    this.renderer.setRenderTarget(this.target);
+    const compiled = this.renderer.compileAsync(scene, camera);
+    this.renderer.setRenderTarget(null);
+    await Promise.all([compiled, this.renderer.compileAsync(this.scene, this.camera)]);
+  }
+
   expose(scene: Scene, camera: Camera): void {
     this.renderer.setRenderTarget(this.target);
     this.renderer.render(scene, camera);

@@ -88,6 +88,7 @@ export class LobeScene {
   /** A frame is being drawn, and whether another one is wanted after it. */
   private drawing = false;
   private again = false;
+  private prepared = false;
   private gone = false;
   private shown = true;
   /** When the last frame was begun, and how long it took beyond a usual one: without a graphics card it may be a tenth of a second. */
@@ -237,6 +238,10 @@ export class LobeScene {
   private draw(): void {
     this.waiting = false;
     if (this.gone) return;
+    if (!this.prepared) {
+      this.prepare();
+      return;
+    }
     const start = performance.now();
     this.last = start;
     this.expose();
@@ -251,6 +256,15 @@ export class LobeScene {
         this.again = false;
         this.invalidate();
       }
+    });
+  }
+
+  private prepare(): void {
+    this.drawing = true;
+    void this.film.prepare(this.scene, this.camera).finally(() => {
+      this.prepared = true;
+      this.drawing = false;
+      if (!this.gone) this.invalidate();
     });
   }
 

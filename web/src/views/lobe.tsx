@@ -110,6 +110,8 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
         if (gone) return;
         let newest = 0;
         const made = new LobeScene(canvas.current!, () => {
+          // Until there is something to show the page need not wait for the graphics card.
+          canvas.current!.hidden = false;
           place(made, overlay.current!, REACH);
           if (newest > 0) drawn("lobe", newest);
           newest = 0;
@@ -159,7 +161,7 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
 
   return (
     <>
-      <canvas ref={canvas} class="lobe-canvas" />
+      <canvas ref={canvas} class="lobe-canvas" hidden />
       <div ref={overlay} class={there ? "lobe-overlay" : "lobe-overlay empty"} tabIndex={0} role="group" aria-label="Lobe in space: arrow keys turn it, plus and minus scale it" onKeyDown={(e) => turnByKey(e, scene.current)} onWheel={(e) => zoomByWheel(e, scene.current)}>
         <Labels />
         <Knob which="light" scene={scene} />
