@@ -143,6 +143,16 @@ describe("the engine's pools", () => {
     FakeWorker.all[1]!.answer("L");
     expect((await later)!.answer).toBe("L");
   });
+  it("hold back what waits, as long as they are told to", async () => {
+    engine.hold("slow", true);
+    const older = ask("older", { pool: "slow", key: "s" });
+    const newer = ask("newer", { pool: "slow", key: "s" });
+    expect(await older).toBeNull();
+    expect(FakeWorker.all).toHaveLength(1);
+    engine.hold("slow", false);
+    FakeWorker.all[1]!.answer("N");
+    expect((await newer)!.answer).toBe("N");
+  });
   it("replace a worker that hangs or breaks, with the files that it had", async () => {
     engine.putFile("a.binary", new Uint8Array(3));
     const hung = expect(ask("a")).rejects.toMatchObject({ complaint: { message: expect.stringContaining("no answer after 30 seconds") } });

@@ -68,6 +68,7 @@ export class Engine {
   private readonly waiting: Record<Pool, Job[]> = { fast: [], slow: [], check: [], render: [] };
   private readonly size: Record<Pool, number>;
   private readonly answered = new Map<string, number>();
+  private readonly held = new Set<Pool>();
   private readonly files = new Map<string, Uint8Array>();
   private readonly fetched = new Map<string, Promise<void>>();
   private module: WebAssembly.Module | null = null;
@@ -112,6 +113,12 @@ export class Engine {
     for (const lane of this.lanes[pool]) {
       if (lane.job?.key?.startsWith(prefix)) this.answered.set(`${pool}\n${lane.job.key}`, this.next++);
     }
+  }
+
+  /** Whether what waits goes on waiting; what runs is let run. */
+  hold(pool: Pool, held: boolean): void {
+    if (held) this.held.add(pool);
+    else if (this.held.delete(pool)) this.pump(pool);
   }
 
   /** Ends what runs under this key; its promise resolves to null. */
@@ -196,7 +203,7 @@ export class Engine {
   }
 
   private pump(pool: Pool): void {
-    if (this.module === null) return;
+    if (this.module === null || this.held.has(pool)) return;
     const lanes = this.lanes[pool];
     while (this.waiting[pool].length > 0) {
       let index = lanes.findIndex((lane) => lane.job === null);

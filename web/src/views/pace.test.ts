@@ -2,6 +2,8 @@ import { afterEach, beforeEach, expect, test, vi } from "vitest";
 import type { Shown } from "../state";
 
 let late = false;
+const held: boolean[] = [];
+vi.mock("../engine/client", () => ({ engine: { hold: (_: string, on: boolean) => held.push(on) } }));
 vi.mock("./timings", () => ({ pressed: () => late }));
 vi.useFakeTimers();
 const { functions } = await import("../state");
@@ -31,8 +33,10 @@ test("where they are late, the others follow when nothing has changed for a whil
   functions.value = [shown(1, "d")];
   vi.advanceTimersByTime(100);
   expect(texts()).toEqual(["b"]);
+  expect(held.at(-1)).toBe(true);
   vi.advanceTimersByTime(30);
   expect(texts()).toEqual(["d"]);
+  expect(held.at(-1)).toBe(false);
 });
 
 test("and now and then while it never rests", () => {

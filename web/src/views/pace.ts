@@ -3,6 +3,7 @@
  * when there was time. Without this everything that follows a slider would share a few cores with the plots, which are looked at while it moves.
  */
 import { batch, effect, signal, untracked } from "@preact/signals";
+import { engine } from "../engine/client";
 import { type Shown, visible, wi } from "../state";
 import { pressed } from "./timings";
 
@@ -25,11 +26,16 @@ effect(() => {
       paced.functions.value = functions;
       paced.wi.value = light;
     });
+    engine.hold("slow", false);
   };
   untracked(() => {
     const wait = pressed() && same(functions, paced.functions.value) ? last + PAUSE - performance.now() : 0;
     if (wait <= 0) follow();
-    else timer = setTimeout(follow, Math.min(wait, REST));
+    else {
+      // What was still to be made of what is no longer there has time too.
+      engine.hold("slow", true);
+      timer = setTimeout(follow, Math.min(wait, REST));
+    }
   });
 });
 
