@@ -3,17 +3,20 @@
 
     python benches/peers/bench_error.py --gonio target/release/gonio --work OUT [SCENE ...]
 
-The scenes are those of `scenes.py`, at 256 x 256 pixels. The reference of a scene is Mitsuba's mean of `--reference` samples, kept in OUT and used again; its
-own variance is taken off. Each setting makes `--seeds` pictures of `--spp` samples. The error is that relative to the reference, (x - r)^2 / (r^2 + 0.01), of which
-the thousandth of the pixels with the largest is left out: one path that finds a lamp by chance would decide otherwise. Seconds are those of all
+The scenes are those of `scenes.py`, at 256 x 256 pixels. The error of a setting is the variance of its `--seeds` pictures, pixel by pixel
+and relative, s^2 / (r^2 + 0.01), of which the thousandth of the pixels with the largest is left out: one path that finds a lamp by chance would decide otherwise. The
+reference r of a scene is Mitsuba's mean of `--reference` samples, kept in OUT and used again. It is too noisy to tell the errors of the better settings; that the
+pictures have its mean is printed, and `compare_images.py` tells it more exactly. Seconds are those of all
 threads; scenes are loaded, and Mitsuba's kernels compiled, before.
 """
 
 import argparse
+import itertools
 import os
 import pathlib
 import resource
 import subprocess
+import sys
 
 import mitsuba as mi
 import numpy as np
@@ -25,8 +28,12 @@ import mitsuba_to_gonio as convert
 import scenes
 
 RESOLUTION = 256
-THEIRS = ["independent", "stratified", "multijitter", "ldsampler"]
-OURS = {"default": "", "compensated": "--env-sampling compensated"}
+# Sampler, the reflections before roulette, and how many times as many samples: errors of even points fall faster than their number grows.
+THEIRS = [*itertools.product(["independent", "stratified", "multijitter", "ldsampler"], [5, 1000], [1]), ("multijitter", 5, 4), ("ldsampler", 5, 4)]
+# Options, and how many times as many samples.
+OURS = [("", 1), ("--adaptive", 1), ("--splitting 4", 1), ("--splitting 4 --adaptive", 1), ("--light-samples 4 --splitting 2 --adaptive", 2)]
+# Added where there is a sky.
+SKY = "--env-sampling compensated"
 
 
 def cpu_seconds(who):
@@ -34,19 +41,23 @@ def cpu_seconds(who):
     return used.ru_utime + used.ru_stime
 
 
-def theirs(adapted, sampler, args):
-    adapted["sensor"] = dict(adapted["sensor"], sampler={"type": sampler, "sample_count": args.spp})
+def theirs(adapted, setting, args):
+    sampler, roulette, times = setting
+    spp = args.spp * times
+    adapted["sensor"] = dict(adapted["sensor"], sampler={"type": sampler, "sample_count": spp})
+    adapted["integrator"] = dict(adapted["integrator"], rr_depth=roulette)
     scene = mi.load_dict(adapted)
     pictures, seconds = [], []
     for seed in range(args.seeds + 1):
         start = cpu_seconds(resource.RUSAGE_SELF)
-        pictures.append(np.array(mi.render(scene, spp=args.spp, seed=seed)))
+        pictures.append(np.array(mi.render(scene, spp=spp, seed=seed)))
         seconds.append(cpu_seconds(resource.RUSAGE_SELF) - start)
     # The first compiles.
     return pictures[1:], np.median(seconds[1:])
 
 
-def ours(toml, options, args):
+def ours(toml, options, times, args):
+    spp = args.spp * times
     pictures, seconds = [], []
     out = args.work / "error.exr"
 
@@ -59,26 +70,25 @@ def ours(toml, options, args):
 
     for seed in range(args.seeds):
         start = render(1, seed)
-        seconds.append((render(args.spp, seed) - start) * args.spp / (args.spp - 1))
+        seconds.append((render(spp, seed) - start) * spp / (spp - 1))
         layers = dict(mi.Bitmap(str(out)).split())
         pictures.append(np.array(layers["<root>"], dtype=np.float32)[..., :3])
     return pictures, np.median(seconds)
 
 
 def reference(name, scene, args):
-    """The mean picture, and the variance of its pixels."""
+    """The mean picture."""
     path = args.work / f"reference_{name}.npz"
     if path.exists():
-        kept = np.load(path)
-        return kept["mean"], kept["variance"]
-    passes = [np.array(mi.render(scene, spp=64, seed=1000 + k), dtype=np.float64) for k in range(max(args.reference // 64, 2))]
-    mean, variance = np.mean(passes, 0), np.var(passes, 0, ddof=1) / len(passes)
-    np.savez(path, mean=mean, variance=variance)
-    return mean, variance
+        return np.load(path)["mean"]
+    count = max(args.reference // 64, 2)
+    mean = sum(np.array(mi.render(scene, spp=64, seed=1000 + k), dtype=np.float64) for k in range(count)) / count
+    np.savez(path, mean=mean)
+    return mean
 
 
-def error(pictures, mean, variance):
-    each = np.mean([((p - mean) ** 2 - variance) / (mean**2 + 0.01) for p in pictures], 0).mean(-1).ravel()
+def error(pictures, reference):
+    each = (np.var(pictures, 0, ddof=1) / (reference**2 + 0.01)).mean(-1).ravel()
     return float(np.sort(each)[: int(0.999 * each.size)].mean())
 
 
@@ -88,7 +98,7 @@ def main():
     parser.add_argument("--gonio", type=pathlib.Path, required=True, help="the release build of the command")
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for scenes and images")
     parser.add_argument("--spp", type=int, default=64)
-    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--reference", type=int, default=8192, help="samples of the reference")
     args = parser.parse_args()
     args.work.mkdir(parents=True, exist_ok=True)
@@ -98,15 +108,20 @@ def main():
         toml = convert.write(name, adapted, args.work.resolve())
         best = {}
         loaded = mi.load_dict(adapted)
-        mean, variance = reference(name, loaded, args)
-        for sampler in THEIRS:
-            pictures, seconds = theirs(adapted, sampler, args)
-            found = (1 / (seconds * error(pictures, mean, variance)), sampler, error(pictures, mean, variance), seconds)
+        mean = reference(name, loaded, args)
+        for setting in THEIRS:
+            pictures, seconds = theirs(adapted, setting, args)
+            off = error(pictures, mean)
+            found = (1 / (seconds * off), "{}, roulette after {}, {} samples".format(*setting[:2], args.spp * setting[2]), off, seconds)
             best["theirs"] = max(best.get("theirs", found), found)
-        for setting, options in OURS.items():
-            pictures, seconds = ours(toml, options, args)
-            found = (1 / (seconds * error(pictures, mean, variance)), setting, error(pictures, mean, variance), seconds)
+        under_a_sky = any(isinstance(v, dict) and v.get("type") == "envmap" for v in adapted.values())
+        for options, times in OURS:
+            options = f"{options} {SKY}".strip() if under_a_sky else options
+            pictures, seconds = ours(toml, options, times, args)
+            off = error(pictures, mean)
+            found = (1 / (seconds * off), f"{args.spp * times} samples {options}".strip(), off, seconds)
             best["ours"] = max(best.get("ours", found), found)
+            print(f"{name}: {found[1]}: error {off:.3g}, {seconds:.3g} s, {found[0]:.4g}; mean off the reference's by {np.mean(pictures) / mean.mean() - 1:+.2%}", file=sys.stderr, flush=True)
         (a, *theirs_), (b, *ours_) = best["theirs"], best["ours"]
         row = [name] + [f"{x:.3g}" if isinstance(x, float) else x for x in [*theirs_, *ours_]]
         print("| " + " | ".join(row) + f" | {b / a:.2f} | {os.getloadavg()[0]:.1f} |", flush=True)

@@ -84,8 +84,12 @@ impl Identity {
             all.insert("screen".to_owned(), format!("{screen:?}"));
         }
         // What a pixel is judged by decides which samples it has.
-        if let (true, Some(noise)) = (target.adaptive, target.noise) {
-            all.insert(ADAPTIVE.to_owned(), format!("to a noise of {noise}"));
+        if target.adaptive {
+            let goal = match target.noise {
+                Some(noise) => format!("to a noise of {noise}"),
+                None => format!("{} samples in the mean", target.samples),
+            };
+            all.insert(ADAPTIVE.to_owned(), goal);
         }
         Self(all)
     }
@@ -162,6 +166,21 @@ mod tests {
         };
         assert_eq!(
             other("ab", 2.0, &adaptive(0.1)).as_deref(),
+            Some("adaptive")
+        );
+        let mean = |samples| RenderOptions {
+            target: Target {
+                samples,
+                adaptive: true,
+                ..options.target
+            },
+            ..options
+        };
+        assert_eq!(other("ab", 2.0, &mean(64)).as_deref(), Some("adaptive"));
+        let few = Identity::new("ab", &camera(2.0), &mean(32));
+        let many = Identity::new("ab", &camera(2.0), &mean(64));
+        assert_eq!(
+            few.mismatch(&many).map(|m| m.what).as_deref(),
             Some("adaptive")
         );
         let coarse = Identity::new("ab", &camera(2.0), &adaptive(0.1));

@@ -3,7 +3,7 @@
 use crate::film::{Film, FilmRow, Place, Rejected};
 use crate::integrator::dimension;
 use crate::integrator::shares::{Shares, Split};
-use crate::integrator::wavefront::{Gathered, Plan, WAVE, Wavefront};
+use crate::integrator::wavefront::{Gathered, Plan, Wavefront};
 use crate::{RayCounts, RenderOptions};
 use gonio_num::{Vec3, Vectors};
 use gonio_radiometry::sequence::{SampleStream, SampleStreams, SamplerKind};
@@ -127,6 +127,8 @@ fn take_row(
 /// The samples of a row in waves.
 struct Row<'a> {
     waves: Wavefront<'a>,
+    /// Samples in a wave.
+    wave: usize,
     places: Vec<(u32, u32)>,
     streams: SampleStreams,
     offset: [Vec<f32>; 2],
@@ -141,6 +143,7 @@ impl<'a> Row<'a> {
     fn new(plan: &'a Plan<'a>) -> Self {
         Self {
             waves: Wavefront::new(plan),
+            wave: plan.wave(),
             places: Vec::new(),
             streams: SampleStreams::new(SamplerKind::default()),
             offset: [const { Vec::new() }; 2],
@@ -168,7 +171,7 @@ impl<'a> Row<'a> {
         let mut places = places.peekable();
         while places.peek().is_some() {
             self.places.clear();
-            self.places.extend(places.by_ref().take(WAVE));
+            self.places.extend(places.by_ref().take(self.wave));
             self.start(camera, options, y);
             let (light, rays) = (&mut self.light, [&self.origins, &self.directions]);
             self.waves.radiance(rays, &self.streams, light, &mut counts);
@@ -421,6 +424,18 @@ mod tests {
                 SamplerKind::Sobol,
                 Path {
                     max_bounces: 0,
+                    ..Path::default()
+                },
+            ),
+            (
+                panorama(),
+                EnvironmentSampling::Compensated,
+                SamplerKind::Sobol,
+                Path {
+                    max_bounces: 4,
+                    roulette_after: 0,
+                    light_samples: 4,
+                    splitting: 3,
                     ..Path::default()
                 },
             ),

@@ -1,6 +1,6 @@
 //! [`render`]: a picture, pass by pass.
 
-use crate::adaptive::{self, Active};
+use crate::adaptive::{self, Active, Goal};
 use crate::film::{Film, Kept};
 use crate::pass::{Wanted, take_pass};
 use crate::{Exposure, Integrator, PixelFilter, RayCounts, RenderError, Screen};
@@ -12,15 +12,37 @@ use std::time::{Duration, Instant};
 /// When a rendering is finished: at the first target that is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Target {
-    /// Samples per pixel: the index after the last one.
+    /// Samples per pixel: the index after the last one. Where they are taken adaptively without a target of noise, their mean.
     pub samples: u32,
     /// Wall-clock time.
     pub time: Option<Duration>,
     /// Noise, [`Film::noise`]: 0.02 is 2 %.
     pub noise: Option<f64>,
-    /// Whether to go on, after 32 samples of all pixels, with those alone whose neighbourhood is noisier than the target. A pixel's own
-    /// samples have no part in whether it goes on, which would make the picture too dark (Kirk & Arvo 1991).
+    /// Whether samples go, after 32 of all pixels, where they are needed. With a target of noise: to the pixels alone whose neighbourhood is
+    /// noisier than the target. Without: to those where one more sample takes most from the mean squared relative error, twice as many each
+    /// time, until `samples` are taken in the mean. A pixel's own samples have no part in whether it goes on, which would make the
+    /// picture too dark (Kirk & Arvo 1991).
     pub adaptive: bool,
+}
+
+/// Samples that one pixel may have where only their mean is given.
+const MOST_OF_ONE: u32 = 1 << 20;
+
+impl Target {
+    fn goal(&self) -> Option<Goal> {
+        self.adaptive.then(|| match self.noise {
+            Some(noise) => Goal::Noise(noise),
+            None => Goal::Mean(self.samples),
+        })
+    }
+
+    /// Samples that one pixel may have.
+    fn most(&self) -> u32 {
+        match self.goal() {
+            Some(Goal::Mean(_)) => MOST_OF_ONE,
+            _ => self.samples,
+        }
+    }
 }
 
 /// How a picture is taken.
@@ -70,7 +92,7 @@ impl Default for RenderOptions {
 /// How far a rendering has come, told after each pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {
-    /// Samples per pixel so far.
+    /// Samples per pixel so far; their mean, where that is the target.
     pub samples: u32,
     /// Samples per pixel at which it ends at the latest.
     pub of: u32,
@@ -176,7 +198,7 @@ pub fn expose(
                 pixels,
                 first,
                 count,
-                end: target.samples,
+                end: target.most(),
             },
         };
         exposure.rays += take_pass(scene, camera, options, &mut exposure.film, &wanted);
@@ -187,7 +209,12 @@ pub fn expose(
             Some(pixels) => pixels.iter().filter(|p| **p).count() as f64 / pixels.len() as f64,
         };
         let report = Progress {
-            samples: exposure.samples.end - first,
+            samples: match target.goal() {
+                Some(Goal::Mean(_)) => {
+                    (exposure.film.samples() / exposure.film.pixels().len() as u64) as u32
+                }
+                _ => exposure.samples.end - first,
+            },
             of: target.samples - first,
             rays: exposure.rays,
             elapsed: exposure.elapsed,
@@ -239,19 +266,23 @@ enum Next {
 fn next_pass(exposure: &Exposure, target: &Target) -> Next {
     let taken = &exposure.samples;
     let done = taken.end - taken.start;
-    let most = target.samples - taken.start;
-    if let (true, Some(noise)) = (target.adaptive && done >= adaptive::BASE, target.noise) {
-        let Active { pixels, left } = adaptive::active(&exposure.film, noise, most);
+    let most = target.most() - taken.start;
+    if let Some(goal) = target.goal().filter(|_| done >= adaptive::BASE) {
+        let Active {
+            pixels,
+            left,
+            begun,
+        } = adaptive::active(&exposure.film, goal, most);
         if !pixels.contains(&true) {
             return Next::Nothing;
         }
         return Next::Pass {
             active: Some(pixels),
             left,
-            begun: left < adaptive::PASS,
+            begun,
         };
     }
-    let end = end_of_pass(done).min(most);
+    let end = end_of_pass(done).min(target.samples - taken.start);
     if end == done {
         return Next::Nothing;
     }
@@ -279,7 +310,7 @@ fn check(options: &RenderOptions, exposure: &Exposure) -> Result<(), RenderError
             "at least 1 sample per pixel",
         );
     }
-    if target.samples < taken.end {
+    if target.most() < taken.end {
         return fault(
             "samples",
             format!("{}, after {} that are taken", target.samples, taken.end),
@@ -293,13 +324,6 @@ fn check(options: &RenderOptions, exposure: &Exposure) -> Result<(), RenderError
             "noise",
             noise.to_string(),
             "a positive relative error such as 0.02",
-        );
-    }
-    if target.adaptive && target.noise.is_none() {
-        return fault(
-            "adaptive",
-            "no target of noise".into(),
-            "one: it is what pixels are judged by",
         );
     }
     if target.adaptive && taken.start > 0 {

@@ -24,7 +24,7 @@ fn a_lambertian_sphere_in_a_uniform_furnace_shows_its_albedo() {
         let scene = furnace(&format!("lambertian:reflectance={albedo}"), 1.0);
         for integrator in INTEGRATORS {
             for sampler in SAMPLERS {
-                let film = picture(&scene, &camera, &options(integrator, sampler, 16, 16));
+                let film = picture(&scene, &camera, &options(integrator, sampler, 24, 16));
                 assert!(
                     agrees(&film, albedo, ROUNDING),
                     "{albedo} {integrator:?} {sampler:?}"

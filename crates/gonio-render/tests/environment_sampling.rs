@@ -110,7 +110,7 @@ fn estimate(
     moments
 }
 
-fn integrators(environment: EnvironmentSampling) -> [Integrator; 2] {
+fn integrators(environment: EnvironmentSampling) -> [Integrator; 3] {
     [
         Integrator::Direct(Direct {
             environment,
@@ -121,13 +121,20 @@ fn integrators(environment: EnvironmentSampling) -> [Integrator; 2] {
             environment,
             ..Path::default()
         }),
+        Integrator::Path(Path {
+            max_bounces: 1,
+            environment,
+            light_samples: 2,
+            splitting: 3,
+            ..Path::default()
+        }),
     ]
 }
 
 #[test]
 fn every_sampling_gives_what_quadrature_gives() {
     let towards = Vec3::new(0.6, 0.64, 0.48);
-    let level = sidak(1e-4, (2 * 2 * SAMPLINGS.len() * MODELS.len()) as u64);
+    let level = sidak(1e-4, (2 * 3 * SAMPLINGS.len() * MODELS.len()) as u64);
     for (panorama, env) in panoramas() {
         for spec in MODELS {
             let truth = by_quadrature(spec, &env, towards);

@@ -85,6 +85,32 @@ impl SampleStream {
         self.dimension = dimension;
     }
 
+    /// Part `which` of `count` that this sample splits into, at the same dimension: a stream of its own for each.
+    ///
+    /// Parts of the samples 0, 1, 2, … are the samples `count` times as many of one sequence: under [`SamplerKind::Sobol`] they are stratified
+    /// over the samples as well as within each, if `count` is a power of two. The only part of one is the sample itself.
+    ///
+    /// ```
+    /// use gonio_radiometry::sequence::{SampleStream, SamplerKind};
+    /// let sample = |k| SampleStream::new(SamplerKind::Sobol, 7, 1234, k);
+    /// assert_eq!(sample(5).split(4, 3), sample(23));
+    /// ```
+    #[inline]
+    #[must_use]
+    pub fn split(&self, count: u32, which: u32) -> Self {
+        let (key, reversed_index) = split(
+            self.kind,
+            (self.key, self.reversed_index),
+            count.max(1),
+            which,
+        );
+        Self {
+            key,
+            reversed_index,
+            ..*self
+        }
+    }
+
     /// One number in [0, 1).
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
@@ -113,6 +139,26 @@ impl SampleStream {
         match self.kind {
             SamplerKind::Independent => independent(self.key, first),
             SamplerKind::Sobol => padded(self.key, self.reversed_index, first),
+        }
+    }
+}
+
+/// The key and the reversed index of part `which` of `count`.
+#[inline(always)]
+fn split(kind: SamplerKind, (key, reversed): (u64, u32), count: u32, which: u32) -> (u64, u32) {
+    if count == 1 {
+        return (key, reversed);
+    }
+    match kind {
+        SamplerKind::Independent => (hash::combine(key, which.into()), reversed),
+        SamplerKind::Sobol => {
+            let index = u64::from(reversed.reverse_bits()) * u64::from(count) + u64::from(which);
+            // What an index has no digits for is another sequence.
+            let key = match index >> 32 {
+                0 => key,
+                more => hash::combine(key, more),
+            };
+            (key, (index as u32).reverse_bits())
         }
     }
 }

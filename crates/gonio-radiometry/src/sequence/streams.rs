@@ -71,6 +71,29 @@ impl SampleStreams {
         self.reversed_indices.push(others.reversed_indices[i]);
     }
 
+    /// Becomes all parts of others' streams, [`SampleStream::split`]: those of the first, then those of the second, and so on.
+    pub fn split(&mut self, others: &Self, count: u32) {
+        self.kind = others.kind;
+        self.clear();
+        for (&key, &reversed) in others.keys.iter().zip(&others.reversed_indices) {
+            for which in 0..count {
+                let (key, reversed) = super::split(self.kind, (key, reversed), count, which);
+                self.keys.push(key);
+                self.reversed_indices.push(reversed);
+            }
+        }
+    }
+
+    /// Puts `stream` in the place of number `i`.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[inline]
+    pub fn set(&mut self, i: usize, stream: &SampleStream) {
+        self.keys[i] = stream.key;
+        self.reversed_indices[i] = stream.reversed_index;
+    }
+
     /// Becomes those of `others` that `order` names, in its order.
     ///
     /// # Panics
@@ -203,6 +226,19 @@ mod tests {
                     stream.seek(11);
                     assert_eq!(x[i], stream.next_1d());
                     assert_eq!([y[i], z[i]], stream.next_2d());
+                }
+                let mut parts = SampleStreams::new(kind);
+                parts.split(&streams, 4);
+                assert_eq!(parts.len(), 4 * alone.len());
+                for (i, stream) in alone.iter().enumerate() {
+                    for which in 0..4 {
+                        let part = stream.split(4, which);
+                        assert_eq!(parts.get(4 * i + which as usize), part);
+                    }
+                }
+                if count > 5 {
+                    parts.set(3, &alone[5]);
+                    assert_eq!(parts.get(3), alone[5]);
                 }
                 let backwards: Vec<u32> = (0..count).rev().collect();
                 let mut turned = SampleStreams::new(SamplerKind::default());

@@ -299,3 +299,37 @@ fn the_generator_is_uniform_in_every_byte() {
     assert!(seeds < LIMIT, "{seeds}");
     assert_ne!(Rng::from_name("a"), Rng::from_name("b"));
 }
+
+/// Parts of a block of samples are a net, and so are those of each sample. Of the numbers of one sample and of its parts no two are alike, where an
+/// index has no digits left either. The control: parts of three, which aren't stratified within a sample.
+#[test]
+fn parts_of_samples_are_stratified_together() {
+    let parts = |sample: u32, count| {
+        let stream = SampleStream::new(SamplerKind::Sobol, 3, 17, sample);
+        (0..count).map(move |which| {
+            let mut part = stream.split(count, which);
+            part.seek(9);
+            part.next_2d()
+        })
+    };
+    let all: Vec<_> = (16..32).flat_map(|k| parts(k, 4)).collect();
+    assert!(is_net(&all, 0));
+    assert!(all.chunks(4).all(|each| is_net(each, 0)));
+    let threes: Vec<_> = (0..64).flat_map(|k| parts(k, 3).take(2)).collect();
+    assert!(!threes.chunks(2).all(|each| is_net(each, 0)));
+    for kind in KINDS {
+        let mut seen = std::collections::HashSet::new();
+        for sample in [0, 1, 1 << 29, 1 << 30, 1 << 31, u32::MAX] {
+            let stream = SampleStream::new(kind, 3, 17, sample);
+            assert_eq!(stream.split(1, 0), stream);
+            for which in 0..8 {
+                let mut part = stream.split(8, which);
+                let bits = draws(&mut part)
+                    .iter()
+                    .map(|x| x.to_bits())
+                    .collect::<Vec<_>>();
+                assert!(seen.insert(bits), "{kind:?}, part {which} of {sample}");
+            }
+        }
+    }
+}

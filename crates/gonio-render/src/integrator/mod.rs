@@ -165,7 +165,7 @@ pub(crate) mod dimension {
     pub const FILM: u32 = 0;
     /// The place on the lens, two numbers.
     pub const LENS: u32 = 2;
-    /// Where reflection `bounce` begins to draw: light choice, light position (2), direction (3), roulette.
+    /// Where reflection `bounce` begins to draw: light position and choice (3), direction (3), roulette.
     pub const fn of_bounce(bounce: u32) -> u32 {
         4 + 8 * bounce
     }

@@ -5,14 +5,17 @@ use super::vertex::{Vertex, arrive};
 use super::{
     EnvironmentSampling, RayCounts, dimension, light_at, power_heuristic, product, scaled, sum,
 };
-use gonio_env::Guide;
 use gonio_radiometry::sequence::SampleStream;
 use gonio_scene::{Interior, Light, Scene};
 
 /// Options of the path tracer.
 ///
-/// At each reflection one light is sampled and one direction is drawn by the reflection function; multiple importance
-/// sampling (Veach 1997, power heuristic) joins the two estimates of direct light. Passing through a surface counts as a reflection.
+/// At each reflection lights are sampled, and directions are drawn by the reflection function; multiple importance
+/// sampling (Veach 1997, power heuristic, of as many samples as there are) joins the two estimates of direct light. Passing through a surface
+/// counts as a reflection.
+///
+/// At the first surface both may be done several times (splitting: Arvo and Kirk 1990, "Particle Transport and Image Synthesis"), which shares
+/// the cost of the way from the camera to there. At all others it is done once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Path {
     /// Reflections that light may make on its way from a light to the camera; 0 shows lights alone.
@@ -22,20 +25,91 @@ pub struct Path {
     pub roulette_after: u32,
     /// How light from the environment is sampled.
     pub environment: EnvironmentSampling,
+    /// Light samples at the first surface, 1 to [`Path::MOST`]. Powers of two are stratified best.
+    pub light_samples: u32,
+    /// Directions drawn at the first surface, with a path each, 1 to [`Path::MOST`]; a surface that reflects into single directions alone
+    /// has one. Powers of two are stratified best.
+    pub splitting: u32,
 }
 
 impl Default for Path {
-    /// 64 reflections at most, roulette after 4.
+    /// 64 reflections at most, roulette after 4, nothing split.
     fn default() -> Self {
         Self {
             max_bounces: 64,
             roulette_after: 4,
             environment: EnvironmentSampling::Luminance,
+            light_samples: 1,
+            splitting: 1,
         }
     }
 }
 
+/// How many samples each way of finding direct light has at a surface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Strategies {
+    pub lights: u32,
+    pub directions: u32,
+}
+
+impl Strategies {
+    /// The density of all samples of lights together, where one has this.
+    #[inline(always)]
+    pub fn of_lights(self, pdf: f32) -> f32 {
+        self.lights as f32 * pdf
+    }
+
+    /// The density of all directions together, where one has this.
+    #[inline(always)]
+    pub fn of_directions(self, pdf: f32) -> f32 {
+        self.directions as f32 * pdf
+    }
+}
+
+/// A path on its way.
+struct Walk {
+    interior: Interior,
+    throughput: [f32; 3],
+    /// What takes the scaling of radiance by n² out of the throughput, for roulette.
+    unscaling: [f32; 3],
+    /// The light so far.
+    total: [f32; 3],
+}
+
 impl Path {
+    /// The largest number of samples that one may split into.
+    pub const MOST: u32 = 64;
+
+    /// The samples after `bounce` reflections.
+    ///
+    /// - `delta`: whether the surface reflects into single directions alone
+    #[inline(always)]
+    pub(super) fn strategies(&self, bounce: u32, delta: bool) -> Strategies {
+        let within = |n: u32| n.clamp(1, Self::MOST);
+        match bounce {
+            0 if delta => Strategies {
+                lights: within(self.light_samples),
+                directions: 1,
+            },
+            0 => Strategies {
+                lights: within(self.light_samples),
+                directions: within(self.splitting),
+            },
+            _ => Strategies {
+                lights: 1,
+                directions: 1,
+            },
+        }
+    }
+
+    /// The probability that a path that carries this much goes on. One of several from the first surface is judged as if it were the only one:
+    /// it carries its share alone because the others carry theirs.
+    #[inline(always)]
+    pub(super) fn survival(&self, carried: f32) -> f32 {
+        let paths = self.strategies(0, false).directions;
+        (carried * paths as f32).min(0.95)
+    }
+
     /// Radiance that `vertex` reflects toward its viewer, which is in the bodies of `interior`.
     pub(super) fn reflected<'a>(
         &self,
@@ -46,104 +120,181 @@ impl Path {
         counts: &mut RayCounts,
         shares: &mut Shares<'_>,
     ) -> [f32; 3] {
-        let mut interior = *interior;
-        let mut total = [0.0; 3];
-        let mut throughput = [1.0; 3];
-        // What takes the scaling of radiance by n² out of the throughput, for roulette.
-        let mut unscaling = [1.0; 3];
-        // In one place from arrival to departure: a vertex may be large.
-        let mut current = Some(vertex);
-        for bounce in 0..self.max_bounces {
-            let Some(vertex) = &current else {
-                break;
+        if self.max_bounces == 0 {
+            return [0.0; 3];
+        }
+        let mut walk = Walk {
+            interior: *interior,
+            throughput: [1.0; 3],
+            unscaling: [1.0; 3],
+            total: [0.0; 3],
+        };
+        self.direct(scene, &vertex, 0, &mut walk, stream, counts, shares);
+        let paths = self.strategies(0, vertex.model.is_delta()).directions;
+        let mut part = stream.split(paths, 0);
+        self.go_on(scene, &vertex, &mut walk, &mut part, counts, shares);
+        let mut total = walk.total;
+        for which in 1..paths {
+            let mut walk = Walk {
+                interior: *interior,
+                throughput: [1.0; 3],
+                unscaling: [1.0; 3],
+                total: [0.0; 3],
             };
-            let base = dimension::of_bounce(bounce);
-            let guide = self.environment.guide(vertex);
-            if !vertex.model.is_delta() {
-                let (light, direct) =
-                    self.direct(scene, vertex, guide, bounce, &interior, stream, counts);
-                let arrived = product(throughput, direct);
-                total = sum(total, arrived);
-                shares.add(light, bounce + 1, arrived);
-            }
-
-            stream.seek(base + dimension::DIRECTION);
-            let Some(drawn) = vertex.sample(stream.next_3d()) else {
-                break;
+            let mut part = stream.split(paths, which);
+            // Summed as waves do, path by path.
+            let mut apart = vec![[0.0; 3]; shares.values.len()];
+            let mut own = Shares {
+                split: shares.split,
+                values: &mut apart,
             };
-            throughput = product(throughput, drawn.weight);
-            if throughput == [0.0; 3] {
-                break;
-            }
-            vertex.unscale(&mut unscaling, drawn.wi);
-            vertex.cross(scene, &mut interior, drawn.wi);
-            let ray = vertex.point.spawn_ray(drawn.wi);
-            let weight = |light_density: f32| {
-                if drawn.delta {
-                    1.0
-                } else {
-                    power_heuristic(drawn.pdf, light_density)
-                }
-            };
-            let from = vertex.receiver();
-            current = arrive(
-                scene,
-                &ray,
-                &mut interior,
-                &mut throughput,
-                bounce + 1,
-                stream,
-                counts,
-            );
-            let Some(next) = &current else {
-                if self.environment.takes_all(drawn.delta) {
-                    break;
-                }
-                let (radiance, density) =
-                    (scene.lights).environment_radiance_and_pdf_by(guide, from.p, drawn.wi);
-                let arrived = scaled(product(throughput, radiance), weight(density));
-                total = sum(total, arrived);
-                shares.add(scene.lights.environment_index(), bounce + 1, arrived);
-                break;
-            };
-            let radiance = scene.emitted(&next.point, next.wo_world);
-            if radiance != [0.0; 3] {
-                let density = scene.lights.pdf_area(&from, &next.point, drawn.wi);
-                let arrived = scaled(product(throughput, radiance), weight(density));
-                total = sum(total, arrived);
-                shares.add(light_at(scene, &next.point), bounce + 1, arrived);
-            }
-
-            if bounce >= self.roulette_after {
-                let [r, g, b] = product(throughput, unscaling);
-                let survival = r.max(g).max(b).min(0.95);
-                stream.seek(base + dimension::ROULETTE);
-                if stream.next_1d() >= survival {
-                    break;
-                }
-                throughput = scaled(throughput, 1.0 / survival);
+            self.go_on(scene, &vertex, &mut walk, &mut part, counts, &mut own);
+            total = sum(total, walk.total);
+            for (all, own) in shares.values.iter_mut().zip(apart) {
+                *all = sum(*all, own);
             }
         }
         total
     }
 
-    /// Light that comes straight from one of the lights, and which: scattered toward the viewer, with the weight that joins it to the
-    /// direction drawn by the reflection function.
+    /// Follows one path from the first surface.
+    fn go_on<'a>(
+        &self,
+        scene: &'a Scene,
+        first: &Vertex<'a>,
+        walk: &mut Walk,
+        stream: &mut SampleStream,
+        counts: &mut RayCounts,
+        shares: &mut Shares<'_>,
+    ) {
+        let mut current = self.step(scene, first, 0, walk, stream, counts, shares);
+        for bounce in 1..self.max_bounces {
+            let Some(vertex) = &current else {
+                break;
+            };
+            self.direct(scene, vertex, bounce, walk, stream, counts, shares);
+            current = self.step(scene, vertex, bounce, walk, stream, counts, shares);
+        }
+    }
+
+    /// Draws a direction, goes there, and takes in what shines there. Nothing where the path ends.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "the state of a path")]
+    fn step<'a>(
+        &self,
+        scene: &'a Scene,
+        vertex: &Vertex<'a>,
+        bounce: u32,
+        walk: &mut Walk,
+        stream: &mut SampleStream,
+        counts: &mut RayCounts,
+        shares: &mut Shares<'_>,
+    ) -> Option<Vertex<'a>> {
+        let strategies = self.strategies(bounce, vertex.model.is_delta());
+        let base = dimension::of_bounce(bounce);
+        stream.seek(base + dimension::DIRECTION);
+        let drawn = vertex.sample(stream.next_3d())?;
+        let share = 1.0 / strategies.directions as f32;
+        walk.throughput = scaled(product(walk.throughput, drawn.weight), share);
+        if walk.throughput == [0.0; 3] {
+            return None;
+        }
+        vertex.unscale(&mut walk.unscaling, drawn.wi);
+        vertex.cross(scene, &mut walk.interior, drawn.wi);
+        let ray = vertex.point.spawn_ray(drawn.wi);
+        let weight = |light_density: f32| {
+            if drawn.delta {
+                1.0
+            } else {
+                let own = strategies.of_directions(drawn.pdf);
+                power_heuristic(own, strategies.of_lights(light_density))
+            }
+        };
+        let from = vertex.receiver();
+        let next = arrive(
+            scene,
+            &ray,
+            &mut walk.interior,
+            &mut walk.throughput,
+            bounce + 1,
+            stream,
+            counts,
+        );
+        let Some(next) = next else {
+            if self.environment.takes_all(drawn.delta) {
+                return None;
+            }
+            let guide = self.environment.guide(vertex);
+            let (radiance, density) =
+                (scene.lights).environment_radiance_and_pdf_by(guide, from.p, drawn.wi);
+            let arrived = scaled(product(walk.throughput, radiance), weight(density));
+            walk.total = sum(walk.total, arrived);
+            shares.add(scene.lights.environment_index(), bounce + 1, arrived);
+            return None;
+        };
+        let radiance = scene.emitted(&next.point, next.wo_world);
+        if radiance != [0.0; 3] {
+            let density = scene.lights.pdf_area(&from, &next.point, drawn.wi);
+            let arrived = scaled(product(walk.throughput, radiance), weight(density));
+            walk.total = sum(walk.total, arrived);
+            shares.add(light_at(scene, &next.point), bounce + 1, arrived);
+        }
+        if bounce >= self.roulette_after {
+            let [r, g, b] = product(walk.throughput, walk.unscaling);
+            let survival = self.survival(r.max(g).max(b));
+            stream.seek(base + dimension::ROULETTE);
+            if stream.next_1d() >= survival {
+                return None;
+            }
+            walk.throughput = scaled(walk.throughput, 1.0 / survival);
+        }
+        Some(next)
+    }
+
+    /// Adds light that comes straight from the lights, with the weight that joins it to the directions drawn by the reflection function.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "the state of a path")]
     fn direct(
         &self,
         scene: &Scene,
         vertex: &Vertex<'_>,
-        guide: Guide,
         bounce: u32,
+        walk: &mut Walk,
+        stream: &SampleStream,
+        counts: &mut RayCounts,
+        shares: &mut Shares<'_>,
+    ) {
+        if vertex.model.is_delta() {
+            return;
+        }
+        let strategies = self.strategies(bounce, false);
+        for which in 0..strategies.lights {
+            let mut part = stream.split(strategies.lights, which);
+            let interior = &walk.interior;
+            let (light, direct) = self.sample_light(
+                scene, vertex, bounce, strategies, interior, &mut part, counts,
+            );
+            let arrived = product(walk.throughput, direct);
+            walk.total = sum(walk.total, arrived);
+            shares.add(light, bounce + 1, arrived);
+        }
+    }
+
+    /// Light that comes straight from one of the lights, and which, scattered toward the viewer: one of several samples.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "the state of a path")]
+    fn sample_light(
+        &self,
+        scene: &Scene,
+        vertex: &Vertex<'_>,
+        bounce: u32,
+        strategies: Strategies,
         interior: &Interior,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> (Option<u32>, [f32; 3]) {
         stream.seek(dimension::of_bounce(bounce));
-        let choice = stream.next_1d();
-        let position = stream.next_2d();
+        let [u, v, choice] = stream.next_3d();
         let lights = &scene.lights;
         let at = vertex.receiver();
         if let EnvironmentSampling::Product(candidates) = self.environment
@@ -158,16 +309,19 @@ impl Path {
                 stream,
                 counts,
             );
-            return (Some(chosen.index()), scaled(direct, 1.0 / probability));
+            let share = 1.0 / strategies.of_lights(probability);
+            return (Some(chosen.index()), scaled(direct, share));
         }
-        let Some(light) = lights.sample_by(guide, &at, choice, position) else {
+        let guide = self.environment.guide(vertex);
+        let Some(mut light) = lights.sample_by(guide, &at, choice, [u, v]) else {
             return (None, [0.0; 3]);
         };
+        light.pdf = strategies.of_lights(light.pdf);
         let reflected = vertex.reflect_light(scene, &light, interior, counts, |density| {
             if light.delta {
                 1.0
             } else {
-                power_heuristic(light.pdf, density)
+                power_heuristic(light.pdf, strategies.of_directions(density))
             }
         });
         (Some(light.light), reflected)

@@ -13,7 +13,7 @@ use gonio_scene::{Camera, Light, Material, Scene, SceneBuilder, Shape};
 use gonio_verify::statistics::{Moments, t_test};
 use std::ops::ControlFlow;
 
-pub const INTEGRATORS: [Integrator; 2] = [
+pub const INTEGRATORS: [Integrator; 3] = [
     Integrator::Direct(Direct {
         environment: EnvironmentSampling::Luminance,
         without_cosine: false,
@@ -22,8 +22,19 @@ pub const INTEGRATORS: [Integrator; 2] = [
         max_bounces: 64,
         roulette_after: 4,
         environment: EnvironmentSampling::Luminance,
+        light_samples: 1,
+        splitting: 1,
     }),
+    SPLIT,
 ];
+/// Path tracing with several samples at the first surface.
+pub const SPLIT: Integrator = Integrator::Path(Path {
+    max_bounces: 64,
+    roulette_after: 2,
+    environment: EnvironmentSampling::Luminance,
+    light_samples: 4,
+    splitting: 2,
+});
 pub const SAMPLERS: [SamplerKind; 2] = [SamplerKind::Independent, SamplerKind::Sobol];
 
 /// Probability that a right renderer fails one of these tests, before Šidák's correction over the tests of a file.

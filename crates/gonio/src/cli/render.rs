@@ -99,18 +99,15 @@ pub(super) struct Arguments {
     /// Stop when 95 % of the pixels have a relative error below this: 2%
     #[arg(long, value_name = "ERROR", value_parser = parse::fraction, allow_hyphen_values = true, help_heading = "How long: ends at the first of these")]
     noise: Option<f64>,
-    /// With --noise: after 32 samples of every pixel go on with those alone whose neighbourhood is noisier than asked for
-    #[arg(
-        long,
-        requires = "noise",
-        help_heading = "How long: ends at the first of these"
-    )]
+    /// After 32 samples of every pixel takes them where they are needed. With --noise: in those pixels alone whose neighbourhood is noisier than
+    /// asked for. Without: where a sample takes most from the mean squared error, until there are --spp in the mean
+    #[arg(long, help_heading = "How long: ends at the first of these")]
     adaptive: bool,
     /// Take these samples alone, counted from 0, END not among them: a part of the picture, see 'gonio merge'
-    #[arg(long, value_name = "FIRST:END", value_parser = range::samples, conflicts_with_all = ["part", "time", "noise"], help_heading = "Parts and interruptions")]
+    #[arg(long, value_name = "FIRST:END", value_parser = range::samples, conflicts_with_all = ["part", "time", "noise", "adaptive"], help_heading = "Parts and interruptions")]
     samples: Option<Range<u32>>,
     /// Take part K of N of the samples of --spp, counted from 0; auto/N takes K from the job system: SLURM_ARRAY_TASK_ID, PBS_ARRAY_INDEX, HQ_TASK_ID or JOB_COMPLETION_INDEX
-    #[arg(long, value_name = "K/N", value_parser = range::part, allow_hyphen_values = true, conflicts_with_all = ["time", "noise"], help_heading = "Parts and interruptions")]
+    #[arg(long, value_name = "K/N", value_parser = range::part, allow_hyphen_values = true, conflicts_with_all = ["time", "noise", "adaptive"], help_heading = "Parts and interruptions")]
     part: Option<range::Part>,
     #[command(flatten, next_help_heading = "Parts and interruptions")]
     checkpoint: CheckpointArguments,
@@ -138,6 +135,15 @@ pub(super) struct Arguments {
     /// Reflections that light may make, passages through surfaces included, for the path integrator
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = parse::whole(0, u32::MAX), allow_hyphen_values = true, help_heading = "Method")]
     max_bounces: u32,
+    /// Reflections before Russian roulette may end a path; it judges by the energy that the path carries
+    #[arg(long, value_name = "N", default_value_t = PathTracer::default().roulette_after, value_parser = parse::whole(0, u32::MAX), allow_hyphen_values = true, help_heading = "Method")]
+    roulette_after: u32,
+    /// Light samples at the first surface of each camera ray; powers of two are stratified best
+    #[arg(long, value_name = "N", default_value_t = PathTracer::default().light_samples, value_parser = parse::whole(1, PathTracer::MOST), allow_hyphen_values = true, help_heading = "Method")]
+    light_samples: u32,
+    /// Paths that go on from the first surface of each camera ray; powers of two are stratified best
+    #[arg(long, value_name = "N", default_value_t = PathTracer::default().splitting, value_parser = parse::whole(1, PathTracer::MOST), allow_hyphen_values = true, help_heading = "Method")]
+    splitting: u32,
     /// Where samples come from: Owen-scrambled Sobol' points of every pixel (sobol), or of the whole picture, so that the error after --spp samples is
     /// blue noise (blue-noise), or independent random numbers
     #[arg(long, value_enum, value_name = "NAME", default_value_t = SamplerName::Sobol, requires_if("blue-noise", "spp"), help_heading = "Method")]
@@ -449,7 +455,10 @@ fn options(arguments: &Arguments, scene: &Scene, range: &Range<u32>) -> RenderOp
         width,
         height,
         target: Target {
-            samples: range.end,
+            samples: match arguments.adaptive {
+                true => range.end.min(range::spp(arguments)),
+                false => range.end,
+            },
             time: arguments.time,
             noise: arguments.noise,
             adaptive: arguments.adaptive,
@@ -462,7 +471,9 @@ fn options(arguments: &Arguments, scene: &Scene, range: &Range<u32>) -> RenderOp
             IntegratorName::Path => Integrator::Path(PathTracer {
                 max_bounces: arguments.max_bounces,
                 environment: environment_sampling(arguments),
-                ..PathTracer::default()
+                roulette_after: arguments.roulette_after,
+                light_samples: arguments.light_samples,
+                splitting: arguments.splitting,
             }),
         },
         sampler: match arguments.sampler {

@@ -5,6 +5,7 @@
 
 use super::surface::{Reflects, Vertices, directions};
 use super::{RayCounts, dimension};
+use crate::integrator::path::Strategies;
 use gonio_brdf::{Brdf, batch};
 use gonio_env::Guide;
 use gonio_num::dispatch::{Kernel, dispatch};
@@ -37,17 +38,22 @@ impl Direct {
         for column in [&mut self.choice].into_iter().chain(&mut self.u) {
             column.resize(whole_steps(count), 0.0);
         }
-        let base = dimension::of_bounce(bounce);
-        vertices.streams.draw(base, [&mut self.choice]);
         let [u, v] = &mut self.u;
-        vertices.streams.draw(base + 1, [u, v]);
+        let at = dimension::of_bounce(bounce);
+        vertices.streams.draw(at, [u, v, &mut self.choice]);
         let u = [&self.u[0][..], &self.u[1]];
         let (from, normals) = (&vertices.surfaces, &vertices.receiving);
         (scene.lights).sample_many(guide, from, normals, &self.choice, u, &mut self.light);
     }
 
     /// Evaluates the reflection functions, and follows the shadow rays where anything would be reflected.
-    pub fn reflect(&mut self, scene: &Scene, vertices: &Vertices<'_>, counts: &mut RayCounts) {
+    pub fn reflect(
+        &mut self,
+        scene: &Scene,
+        vertices: &Vertices<'_>,
+        strategies: Strategies,
+        counts: &mut RayCounts,
+    ) {
         let count = vertices.len();
         vertices.to_local(&self.light.wi, &mut self.wi);
         let room = whole_steps(count);
@@ -89,6 +95,7 @@ impl Direct {
             wi: &self.wi,
             f: &mut self.f,
             pdf: &self.pdf,
+            strategies,
         });
         let (origins, directions) = (&mut self.origins, &mut self.directions);
         vertices.surfaces.spawn_rays(
@@ -139,6 +146,7 @@ struct Reflect<'a> {
     wi: &'a Vectors,
     f: &'a mut [Vec<f32>; 3],
     pdf: &'a [f32],
+    strategies: Strategies,
 }
 
 impl Kernel for Reflect<'_> {
@@ -155,11 +163,16 @@ impl Kernel for Reflect<'_> {
         let (lr, lg, lb) = (&lr[..count], &lg[..count], &lb[..count]);
         let (sampled, delta) = (&self.light.pdf[..count], &self.light.delta[..count]);
         let pdf = &self.pdf[..count];
+        let strategies = self.strategies;
         for i in 0..count {
             let cos = cos[i].abs();
             let found = (sampled[i] > 0.0) & (cos > 0.0);
-            let own = if found { sampled[i] } else { 1.0 };
-            let ratio = pdf[i] / own;
+            let own = if found {
+                strategies.of_lights(sampled[i])
+            } else {
+                1.0
+            };
+            let ratio = strategies.of_directions(pdf[i]) / own;
             let heuristic = 1.0 / (1.0 + ratio * ratio);
             let weight = if delta[i] { 1.0 } else { heuristic };
             let factor = weight / own;

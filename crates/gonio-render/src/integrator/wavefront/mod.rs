@@ -19,19 +19,21 @@ use direct::Direct;
 use gonio_brdf::Model;
 use gonio_env::{EnvSamples, Guide};
 use gonio_num::Vectors;
-use gonio_radiometry::sequence::SampleStreams;
+use gonio_radiometry::sequence::{SampleStreams, SamplerKind};
 use gonio_scene::{Hit, Scene};
 use paths::Paths;
 use scatter::Scatter;
 use surface::Vertices;
 
-/// Samples in a wave: their numbers stay in the second cache.
-pub(crate) const WAVE: usize = 1024;
+/// Paths in a wave: their numbers stay in the second cache.
+const WAVE: usize = 1024;
 
 /// What the waves of all threads share: how a scene's paths are put in order.
 pub(crate) struct Plan<'a> {
     scene: &'a Scene,
     path: Path,
+    /// Paths that go on from the first surface of each sample.
+    paths: usize,
     /// How the light of each sample is told apart.
     split: &'a Split,
     guide: Guide,
@@ -77,9 +79,11 @@ impl<'a> Plan<'a> {
             let bucket = instances.iter().map(|i| i.material).collect();
             (bucket, (0..scene.materials.len() as u32).collect())
         };
+        let paths = path.strategies(0, false).directions as usize;
         Some(Self {
             scene,
             path: *path,
+            paths,
             split,
             guide,
             models: scene.materials.iter().map(|m| m.even_model()).collect(),
@@ -89,6 +93,13 @@ impl<'a> Plan<'a> {
                 .map(|i| scene.materials[i.material as usize].emission.is_lit())
                 .collect(),
         })
+    }
+}
+
+impl Plan<'_> {
+    /// Samples in a wave.
+    pub fn wave(&self) -> usize {
+        WAVE / self.paths
     }
 }
 
@@ -114,8 +125,11 @@ pub(crate) struct Wavefront<'a> {
     missed: Vec<u32>,
     around: EnvSamples,
     from: Vectors,
-    /// The samples of the paths in `order`.
+    /// The streams of the paths in `order`.
     ids: Vec<u32>,
+    /// The numbers of each light sample at the first surfaces, and of each path from there.
+    lighting: SampleStreams,
+    going: SampleStreams,
     /// Room for an order to be made in.
     spare: Vec<u32>,
 }
@@ -146,6 +160,8 @@ impl<'a> Wavefront<'a> {
             around: EnvSamples::default(),
             from: Vectors::default(),
             ids: Vec::new(),
+            lighting: SampleStreams::new(SamplerKind::default()),
+            going: SampleStreams::new(SamplerKind::default()),
             spare: Vec::new(),
         }
     }
@@ -163,53 +179,111 @@ impl<'a> Wavefront<'a> {
     ) {
         light.begin(streams.len());
         self.begin(rays);
-        for segment in 0..=self.plan.path.max_bounces {
+        let most = self.plan.path.max_bounces;
+        for segment in 0..=most {
             if self.paths.len() == 0 {
                 break;
             }
             self.follow(segment, light, counts);
-            if segment == self.plan.path.max_bounces && segment > 0 {
+            if segment == most && segment > 0 {
                 break;
             }
             if segment > self.plan.path.roulette_after {
-                self.roulette(streams, segment - 1);
+                self.roulette(segment - 1);
             }
             self.sort();
             let rays = [&self.paths.origin, &self.paths.direction];
             self.vertices.find(rays, &self.order, &self.hits);
             if segment == 0 {
                 self.note_first_surfaces(&mut light.samples);
-                if self.plan.path.max_bounces == 0 {
+                if most == 0 {
                     break;
                 }
+                self.split(streams);
             }
-            self.ids.clear();
-            let ids = self.order.iter().map(|&k| self.paths.id[k as usize]);
-            self.ids.extend(ids);
-            self.vertices.streams.gather(streams, &self.ids);
-            self.direct
-                .draw(self.plan.scene, self.plan.guide, &self.vertices, segment);
-            self.direct.reflect(self.plan.scene, &self.vertices, counts);
-            for (i, contribution) in self.direct.contributions() {
-                let k = self.order[i] as usize;
-                let arrived = product(self.paths.throughput(k), contribution);
-                let from = Some(self.direct.light(i));
-                light.add(self.paths.id[k], from, segment + 1, arrived);
-            }
-            self.scatter.draw(&self.vertices, segment);
-            let unscales = self.vertices.transmit();
-            self.scatter.go_on(
-                &self.vertices,
-                unscales,
-                &self.paths,
-                &self.order,
-                &mut self.next,
-            );
-            std::mem::swap(&mut self.paths, &mut self.next);
+            self.reflect(segment, light, counts);
+            self.scatter(segment);
         }
+        light.end();
         for (sample, emitted) in light.samples.iter_mut().zip(&self.emitted) {
             sample.radiance = sum(*emitted, sample.radiance);
         }
+    }
+
+    /// Gives each light sample at the first surfaces its numbers, and each path that goes on from there.
+    fn split(&mut self, streams: &SampleStreams) {
+        let strategies = self.plan.path.strategies(0, false);
+        self.lighting.split(streams, strategies.lights);
+        self.going.split(streams, strategies.directions);
+        if strategies.directions == 1 {
+            return;
+        }
+        for (group, reflects) in self.vertices.each_group() {
+            for i in group.range.clone() {
+                if reflects.into_single_directions(i - group.range.start) {
+                    let id = self.paths.id[self.order[i] as usize] as usize;
+                    self.going.set(id, &streams.get(id / self.plan.paths));
+                }
+            }
+        }
+    }
+
+    /// Takes in light that comes straight from lights.
+    fn reflect(&mut self, segment: u32, light: &mut Gathered<'_>, counts: &mut RayCounts) {
+        let plan = self.plan;
+        let strategies = plan.path.strategies(segment, false);
+        for which in 0..strategies.lights {
+            let ids = self.order.iter().map(|&k| self.paths.id[k as usize]);
+            self.ids.clear();
+            if segment == 0 {
+                let first = ids.map(|id| id / plan.paths as u32 * strategies.lights);
+                self.ids.extend(first.map(|first| first + which));
+                self.vertices.streams.gather(&self.lighting, &self.ids);
+            } else {
+                self.ids.extend(ids);
+                self.vertices.streams.gather(&self.going, &self.ids);
+            }
+            let direct = &mut self.direct;
+            direct.draw(plan.scene, plan.guide, &self.vertices, segment);
+            direct.reflect(plan.scene, &self.vertices, strategies, counts);
+            for (i, contribution) in direct.contributions() {
+                let k = self.order[i] as usize;
+                let arrived = product(self.paths.throughput(k), contribution);
+                let from = Some(direct.light(i));
+                light.add(self.paths.id[k], from, segment + 1, arrived);
+            }
+        }
+    }
+
+    /// Lets the paths go on, from the first surface several of each.
+    fn scatter(&mut self, segment: u32) {
+        let paths = match segment {
+            0 => self.plan.paths,
+            _ => 1,
+        };
+        let unscales = self.vertices.transmit() || !self.paths.unscaling[0].is_empty();
+        let faces = !self.vertices.receiving.is_empty();
+        (self.next).begin(paths * self.order.len(), unscales, faces);
+        let mut place = 0;
+        for which in 0..paths as u32 {
+            let ids = self.order.iter().map(|&k| self.paths.id[k as usize]);
+            self.ids.clear();
+            self.ids.extend(ids.map(|id| id + which));
+            self.vertices.streams.gather(&self.going, &self.ids);
+            self.scatter.draw(&self.vertices, segment);
+            let part = Part {
+                which,
+                of: paths as u32,
+            };
+            place = self.scatter.go_on(
+                &self.vertices,
+                (&self.paths, &self.order),
+                part,
+                (&mut self.next, place),
+            );
+        }
+        self.next.end(place);
+        std::mem::swap(&mut self.paths, &mut self.next);
     }
 
     fn begin(&mut self, rays: [&Vectors; 2]) {
@@ -219,7 +293,7 @@ impl<'a> Wavefront<'a> {
         let paths = &mut self.paths;
         paths.begin(count, false, false);
         for (i, id) in paths.id.iter_mut().enumerate() {
-            *id = i as u32;
+            *id = (i * self.plan.paths) as u32;
         }
         paths.origin.copy_from(rays[0]);
         paths.direction.copy_from(rays[1]);
@@ -234,6 +308,7 @@ impl<'a> Wavefront<'a> {
     /// surface.
     fn follow(&mut self, segment: u32, light: &mut Gathered<'_>, counts: &mut RayCounts) {
         let (scene, paths) = (self.plan.scene, &self.paths);
+        let strategies = self.plan.path.strategies(segment.saturating_sub(1), false);
         counts.nearest += paths.len() as u64;
         self.order.clear();
         self.missed.clear();
@@ -257,6 +332,7 @@ impl<'a> Wavefront<'a> {
             } else if radiance != [0.0; 3] {
                 let from = paths.receiver(i);
                 let density = (scene.lights).pdf_area(&from, &point, ray.direction);
+                let density = strategies.of_lights(density);
                 let arrived = weighted(paths, i, radiance, density);
                 light.add(paths.id[i], light_at(scene, &point), segment, arrived);
             }
@@ -289,9 +365,10 @@ impl<'a> Wavefront<'a> {
         }
         environment.look_up_many(self.plan.guide, &self.from, around);
         let probability = lights.environment_probability();
+        let strategies = self.plan.path.strategies(segment - 1, false);
         for (i, &k) in self.missed.iter().enumerate() {
             let radiance = [0, 1, 2].map(|c| around.radiance[c][i]);
-            let density = probability * around.pdf[i];
+            let density = strategies.of_lights(probability * around.pdf[i]);
             let arrived = weighted(paths, k as usize, radiance, density);
             let from = lights.environment_index();
             light.add(paths.id[k as usize], from, segment, arrived);
@@ -299,16 +376,16 @@ impl<'a> Wavefront<'a> {
     }
 
     /// Ends paths that carry little, and lets the others carry their share; as `path.rs` does after reflection `bounce`.
-    fn roulette(&mut self, streams: &SampleStreams, bounce: u32) {
-        let paths = &mut self.paths;
+    fn roulette(&mut self, bounce: u32) {
+        let (path, paths) = (&self.plan.path, &mut self.paths);
         self.survival.resize(paths.len(), 0.0);
         let at = dimension::of_bounce(bounce) + dimension::ROULETTE;
-        self.vertices.streams.gather(streams, &paths.id);
+        self.vertices.streams.gather(&self.going, &paths.id);
         self.vertices.streams.draw(at, [&mut self.survival]);
         self.order.retain(|&k| {
             let k = k as usize;
             let [r, g, b] = product(paths.throughput(k), paths.unscaling(k));
-            let survival = r.max(g).max(b).min(0.95);
+            let survival = path.survival(r.max(g).max(b));
             if self.survival[k] >= survival {
                 return false;
             }
@@ -367,7 +444,7 @@ impl<'a> Wavefront<'a> {
         for group in &self.vertices.groups {
             for i in group.range.clone() {
                 let k = self.order[i] as usize;
-                samples[self.paths.id[k] as usize].first = Some(FirstSurface {
+                samples[self.paths.id[k] as usize / self.plan.paths].first = Some(FirstSurface {
                     albedo: self.vertices.albedo(group, i),
                     normal: self.vertices.facing_normal(i).to_array(),
                     position: self.vertices.surfaces.p.get(i).to_array(),
@@ -387,13 +464,24 @@ fn weighted(paths: &Paths, i: usize, radiance: [f32; 3], density: f32) -> [f32; 
     scaled(product(paths.throughput(i), radiance), weight)
 }
 
+/// One of several paths that a point goes on with.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    which: u32,
+    of: u32,
+}
+
 /// The samples of a wave as their light comes together.
 #[derive(Debug)]
 pub(crate) struct Gathered<'a> {
     split: &'a Split,
+    /// Paths of a sample.
+    paths: usize,
     /// One a ray.
     pub samples: Vec<FilmSample>,
-    /// As many a ray as are told apart.
+    /// One a path.
+    arrived: Vec<[f32; 3]>,
+    /// As many a path as are told apart.
     shares: Vec<[f32; 3]>,
 }
 
@@ -401,7 +489,9 @@ impl<'a> Gathered<'a> {
     pub fn new(plan: &Plan<'a>) -> Self {
         Self {
             split: plan.split,
+            paths: plan.paths,
             samples: Vec::new(),
+            arrived: Vec::new(),
             shares: Vec::new(),
         }
     }
@@ -413,22 +503,48 @@ impl<'a> Gathered<'a> {
         };
         self.samples.clear();
         self.samples.resize(count, black);
+        self.arrived.clear();
+        self.arrived.resize(count * self.paths, [0.0; 3]);
         self.shares.clear();
-        self.shares.resize(count * self.split.count(), [0.0; 3]);
+        let shares = count * self.paths * self.split.count();
+        self.shares.resize(shares, [0.0; 3]);
+    }
+
+    /// Adds the paths of each sample.
+    fn end(&mut self) {
+        let of_samples = self.arrived.chunks_exact(self.paths);
+        for (sample, arrived) in self.samples.iter_mut().zip(of_samples) {
+            for &one in arrived {
+                sample.radiance = sum(sample.radiance, one);
+            }
+        }
+        let each = self.split.count();
+        if each == 0 || self.paths == 1 {
+            return;
+        }
+        for of_sample in self.shares.chunks_exact_mut(each * self.paths) {
+            let (all, others) = of_sample.split_at_mut(each);
+            for of_path in others.chunks_exact(each) {
+                for (all, &one) in all.iter_mut().zip(of_path) {
+                    *all = sum(*all, one);
+                }
+            }
+        }
     }
 
     /// The shares of sample `i`.
     pub fn shares(&self, i: usize) -> &[[f32; 3]] {
         let each = self.split.count();
-        &self.shares[i * each..(i + 1) * each]
+        let first = i * self.paths * each;
+        &self.shares[first..first + each]
     }
 
-    /// Adds light to the sample `id`, as [`Shares::add`] does to its shares.
+    /// Adds light to the path `id`, as [`Shares::add`] does to its shares.
     #[inline(always)]
-    fn add(&mut self, id: u32, light: Option<u32>, reflections: u32, arrived: [f32; 3]) {
-        let sample = &mut self.samples[id as usize];
-        sample.radiance = sum(sample.radiance, arrived);
-        self.tell_apart(id, light, reflections, arrived);
+    fn add(&mut self, id: u32, light: Option<u32>, reflections: u32, radiance: [f32; 3]) {
+        let arrived = &mut self.arrived[id as usize];
+        *arrived = sum(*arrived, radiance);
+        self.tell_apart(id, light, reflections, radiance);
     }
 
     /// [`Shares::add`] alone.

@@ -6,7 +6,7 @@ use gonio_scene::{Ray, Receiver};
 /// Paths on their way, as a structure of arrays.
 #[derive(Debug)]
 pub(super) struct Paths {
-    /// Which sample of the wave each belongs to.
+    /// Number of the path: those of the wave's first sample, then those of the second, and so on. Up to the first surface that of a sample's first.
     pub id: Vec<u32>,
     pub origin: Vectors,
     pub direction: Vectors,

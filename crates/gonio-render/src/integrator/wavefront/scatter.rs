@@ -1,8 +1,8 @@
 //! [`Scatter`], the directions in which the paths of a wave go on.
 
-use super::dimension;
 use super::paths::Paths;
 use super::surface::{Reflects, Vertices, directions};
+use super::{Part, dimension};
 use gonio_brdf::{Brdf, batch};
 use gonio_num::{Vectors, vectors::whole_steps};
 
@@ -69,19 +69,19 @@ impl Scatter {
             .offset_origins(&self.wi_world, &mut self.origins);
     }
 
-    /// Lets the paths in `order` go on from their vertices, those that carry anything.
+    /// Lets the paths in `order` go on from their vertices, those that carry anything: as this part of several.
+    ///
+    /// - `next`: the paths that go on, and where the next of them goes
+    ///
+    /// Where the one after the last of them would go.
     pub fn go_on(
         &self,
         vertices: &Vertices<'_>,
-        unscales: bool,
-        paths: &Paths,
-        order: &[u32],
-        next: &mut Paths,
-    ) {
-        let unscales = unscales || !paths.unscaling[0].is_empty();
-        let faces = !vertices.receiving.is_empty();
-        next.begin(order.len(), unscales, faces);
-        let mut place = 0;
+        (paths, order): (&Paths, &[u32]),
+        part: Part,
+        (next, mut place): (&mut Paths, usize),
+    ) -> usize {
+        let (unscales, faces) = (!next.unscaling[0].is_empty(), !next.facing.is_empty());
         for (group, reflects) in vertices.each_group() {
             let even = match &reflects {
                 Reflects::Evenly(model) => Some((model.transmits(), model.relative_ior())),
@@ -89,6 +89,14 @@ impl Scatter {
             };
             for i in group.range.clone() {
                 if self.pdf[i] <= 0.0 {
+                    continue;
+                }
+                let of = if part.of > 1 && reflects.into_single_directions(i - group.range.start) {
+                    1
+                } else {
+                    part.of
+                };
+                if part.which >= of {
                     continue;
                 }
                 let (wi, ng) = (self.wi_world.get(i), vertices.surfaces.ng.get(i));
@@ -113,7 +121,7 @@ impl Scatter {
                 let k = order[i] as usize;
                 let mut throughput = paths.throughput(k);
                 for (t, w) in throughput.iter_mut().zip(&self.weight) {
-                    *t *= w[i];
+                    *t = *t * w[i] * (1.0 / of as f32);
                 }
                 if throughput == [0.0; 3] {
                     continue;
@@ -129,7 +137,7 @@ impl Scatter {
                         column[place] = value;
                     }
                 }
-                next.id[place] = paths.id[k];
+                next.id[place] = paths.id[k] + part.which;
                 next.origin.set(place, self.origins.get(i));
                 next.direction.set(place, wi);
                 next.from.set(place, vertices.surfaces.p.get(i));
@@ -142,11 +150,11 @@ impl Scatter {
                 next.pdf[place] = if self.delta[i] {
                     f32::INFINITY
                 } else {
-                    self.pdf[i]
+                    of as f32 * self.pdf[i]
                 };
                 place += 1;
             }
         }
-        next.end(place);
+        place
     }
 }

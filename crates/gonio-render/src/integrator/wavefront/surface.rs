@@ -39,6 +39,17 @@ pub(super) enum Reflects<'v, 'a> {
     Unevenly(&'v [Vertex<'a>]),
 }
 
+impl Reflects<'_, '_> {
+    /// Whether the group's point number `k` reflects into single directions alone.
+    #[inline]
+    pub fn into_single_directions(&self, k: usize) -> bool {
+        match self {
+            Self::Evenly(model) => model.is_delta(),
+            Self::Unevenly(points) => points[k].model.is_delta(),
+        }
+    }
+}
+
 impl<'a> Vertices<'a> {
     pub fn new(plan: &'a Plan<'a>) -> Self {
         Self {

@@ -117,15 +117,23 @@ pub(super) fn of(
             part: Some(index),
         });
     }
-    let end = spp.unwrap_or(if open_ended {
+    let end = self::spp(arguments);
+    // Only the mean is given then.
+    let some_have_more = arguments.adaptive && arguments.noise.is_none();
+    Ok(Chosen {
+        samples: 0..if some_have_more { NO_LIMIT } else { end },
+        of: (!open_ended && !some_have_more).then_some(end),
+        part: None,
+    })
+}
+
+/// Samples per pixel at which the picture ends at the latest.
+pub(super) fn spp(arguments: &Arguments) -> u32 {
+    let open_ended = arguments.time.is_some() || arguments.noise.is_some();
+    arguments.spp.unwrap_or(if open_ended {
         NO_LIMIT
     } else {
         DEFAULT_SAMPLES
-    });
-    Ok(Chosen {
-        samples: 0..end,
-        of: (!open_ended).then_some(end),
-        part: None,
     })
 }
 
