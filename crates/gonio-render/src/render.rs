@@ -30,10 +30,11 @@ const MOST_OF_ONE: u32 = 1 << 20;
 
 impl Target {
     fn goal(&self) -> Option<Goal> {
-        self.adaptive.then(|| match self.noise {
-            Some(noise) => Goal::Noise(noise),
-            None => Goal::Mean(self.samples),
-        })
+        match self.noise {
+            _ if !self.adaptive => None,
+            Some(noise) => Some(Goal::Noise(noise)),
+            None => Some(Goal::Mean(self.samples)),
+        }
     }
 
     /// Samples that one pixel may have.

@@ -220,7 +220,7 @@ impl<'a> Wavefront<'a> {
         }
         for (group, reflects) in self.vertices.each_group() {
             for i in group.range.clone() {
-                if reflects.into_single_directions(i - group.range.start) {
+                if reflects.is_delta(i - group.range.start) {
                     let id = self.paths.id[self.order[i] as usize] as usize;
                     self.going.set(id, &streams.get(id / self.plan.paths));
                 }
@@ -266,10 +266,13 @@ impl<'a> Wavefront<'a> {
         (self.next).begin(paths * self.order.len(), unscales, faces);
         let mut place = 0;
         for which in 0..paths as u32 {
-            let ids = self.order.iter().map(|&k| self.paths.id[k as usize]);
-            self.ids.clear();
-            self.ids.extend(ids.map(|id| id + which));
-            self.vertices.streams.gather(&self.going, &self.ids);
+            // After that lights have drawn from the same.
+            if segment == 0 {
+                let ids = self.order.iter().map(|&k| self.paths.id[k as usize]);
+                self.ids.clear();
+                self.ids.extend(ids.map(|id| id + which));
+                self.vertices.streams.gather(&self.going, &self.ids);
+            }
             self.scatter.draw(&self.vertices, segment);
             let part = Part {
                 which,

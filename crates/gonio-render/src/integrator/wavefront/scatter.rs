@@ -91,7 +91,7 @@ impl Scatter {
                 if self.pdf[i] <= 0.0 {
                     continue;
                 }
-                let of = if part.of > 1 && reflects.into_single_directions(i - group.range.start) {
+                let of = if part.of > 1 && reflects.is_delta(i - group.range.start) {
                     1
                 } else {
                     part.of

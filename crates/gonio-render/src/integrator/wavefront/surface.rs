@@ -42,7 +42,7 @@ pub(super) enum Reflects<'v, 'a> {
 impl Reflects<'_, '_> {
     /// Whether the group's point number `k` reflects into single directions alone.
     #[inline]
-    pub fn into_single_directions(&self, k: usize) -> bool {
+    pub fn is_delta(&self, k: usize) -> bool {
         match self {
             Self::Evenly(model) => model.is_delta(),
             Self::Unevenly(points) => points[k].model.is_delta(),
