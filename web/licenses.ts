@@ -1,9 +1,11 @@
-/** `licenses.txt` of the built site: of every package whose code or typeface is in it, with the preview's assets. */
+/** `licenses.txt` of the built site: of every package and crate whose code or typeface is in it, with the preview's assets. */
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Plugin } from "vite";
 
 const ASSETS = "../assets";
+/** Of the library's crates, by `cargo xtask web`. */
+const CRATES = "crates.licenses.txt";
 /** Reached through style sheets, which name no modules. */
 const FONTS = ["@fontsource-variable/inter"];
 
@@ -46,6 +48,8 @@ export function licenses(): Plugin {
     generateBundle() {
       for (const font of FONTS) packages.add(join(process.cwd(), "node_modules", font));
       const parts = [...packages].filter((folder) => existsSync(join(folder, "package.json"))).sort().map(entry);
+      if (!existsSync(CRATES)) throw new Error(`web/${CRATES} is missing: cargo xtask web writes it`);
+      parts.push(readFileSync(CRATES, "utf8").trim());
       parts.push(`The preview's object and stand\n\n${readFileSync(join(ASSETS, "preview/LICENSE-OpenPBR-viewer"), "utf8").trim()}`);
       parts.push(readFileSync(join(ASSETS, "README.md"), "utf8").trim());
       this.emitFile({ type: "asset", fileName: "licenses.txt", source: `${parts.join(`\n\n${"-".repeat(80)}\n\n`)}\n` });

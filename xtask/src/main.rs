@@ -2,6 +2,7 @@
 
 mod fuzz;
 mod house;
+mod licenses;
 mod links;
 mod peers;
 mod web;

@@ -1,6 +1,6 @@
 //! `web`: the explorer as a site of static files, in `web/dist`.
 
-use crate::call;
+use crate::{call, licenses};
 use std::path::Path;
 use std::process::Command;
 
@@ -55,6 +55,10 @@ fn library(root: &Path) -> Result<(), String> {
     let built = root.join("target").join(TARGET).join("web/gonio_web.wasm");
     let public = root.join("web/public");
     copy(&built, &public.join("gonio.wasm"))?;
+    // Beside the page's sources: its build puts it into `licenses.txt`, after what the page's packages bring.
+    let texts = licenses::of(root, "gonio-web", TARGET)?;
+    let file = root.join("web/crates.licenses.txt");
+    std::fs::write(&file, texts).map_err(|e| format!("{}: {e}", file.display()))?;
     for file in ["scene.toml", "ball.glb", "stand.glb", "sunset.hdr"] {
         let from = root.join("assets/preview").join(file);
         copy(&from, &public.join("preview").join(file))?;

@@ -3,35 +3,41 @@
 //! Inter 3.19 in two weights, reduced to Latin, Greek, figures and the signs of mathematics (SIL Open Font License 1.1, in `fonts/`).
 
 use resvg::usvg::fontdb;
-use skrifa::instance::{LocationRef, Size};
-use skrifa::{FontRef, MetadataProvider};
 use std::sync::{Arc, LazyLock};
 
 const REGULAR: &[u8] = include_bytes!("../fonts/Inter-Regular.otf");
 const SEMIBOLD: &[u8] = include_bytes!("../fonts/Inter-SemiBold.otf");
+
+/// How wide the letters are, so that a program that writes no pictures carries no font. For each, in the order of their numbers, three
+/// little-endian 16-bit numbers: the letter's number in Unicode, and how far it advances in either weight, of [`EM`]. The first is the
+/// box for missing letters, under 0.
+const ADVANCES: &[u8] = include_bytes!("../fonts/advances.bin");
+
+/// Units of the font in its size.
+const EM: f64 = 2816.0;
 
 /// Names of the font in an SVG: a reader without Inter sees the text in the system's own.
 pub(crate) const FAMILY: &str =
     "Inter,system-ui,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif";
 
 /// Height of a capital letter over the size of the font.
-pub(crate) const CAPITAL: f64 = 2048.0 / 2816.0;
+pub(crate) const CAPITAL: f64 = 2048.0 / EM;
 
 /// How much of the size of the font reaches below the base line.
-pub(crate) const DESCENT: f64 = 680.0 / 2816.0;
+pub(crate) const DESCENT: f64 = 680.0 / EM;
 
 /// The width of `text` in the unit of `size`. A letter that the font doesn't have is as wide as its box for missing ones.
 pub(crate) fn width(text: &str, size: f64, bold: bool) -> f64 {
-    let Ok(font) = FontRef::new(if bold { SEMIBOLD } else { REGULAR }) else {
-        return 0.6 * size * text.chars().count() as f64;
-    };
-    let metrics = font.glyph_metrics(Size::new(1.0), LocationRef::default());
-    let letters = font.charmap();
-    let advances = text.chars().map(|c| {
-        let glyph = letters.map(c).unwrap_or_default();
-        f64::from(metrics.advance_width(glyph).unwrap_or(0.6))
-    });
-    advances.sum::<f64>() * size
+    let units: u32 = text.chars().map(|c| advance(u32::from(c), bold)).sum();
+    f64::from(units) / EM * size
+}
+
+/// How far a letter advances, of [`EM`].
+fn advance(letter: u32, bold: bool) -> u32 {
+    let (rows, _) = ADVANCES.as_chunks::<6>();
+    let number = |row: &[u8; 6], at: usize| u32::from(u16::from_le_bytes([row[at], row[at + 1]]));
+    let place = rows.binary_search_by_key(&letter, |row| number(row, 0));
+    number(&rows[place.unwrap_or(0)], if bold { 4 } else { 2 })
 }
 
 /// `text`, cut with an ellipsis so that it is at most `most` wide.
@@ -83,6 +89,33 @@ pub(crate) fn database() -> Arc<fontdb::Database> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use skrifa::instance::{LocationRef, Size};
+    use skrifa::{FontRef, MetadataProvider};
+
+    /// `GONIO_UPDATE=1` writes them.
+    #[test]
+    fn the_advances_are_those_of_the_fonts() {
+        let fonts = [REGULAR, SEMIBOLD].map(|data| FontRef::new(data).unwrap());
+        let letters = fonts[0].charmap();
+        let mut all: Vec<u32> = letters.mappings().map(|(letter, _)| letter).collect();
+        all.push(0);
+        all.sort_unstable();
+        let mut bytes = Vec::new();
+        for letter in all {
+            bytes.extend(u16::try_from(letter).unwrap().to_le_bytes());
+            for font in &fonts {
+                let metrics = font.glyph_metrics(Size::unscaled(), LocationRef::default());
+                let glyph = font.charmap().map(letter).unwrap_or_default();
+                let advance = metrics.advance_width(glyph).unwrap();
+                bytes.extend((advance as u16).to_le_bytes());
+            }
+        }
+        if std::env::var_os("GONIO_UPDATE").is_some() {
+            let file = concat!(env!("CARGO_MANIFEST_DIR"), "/fonts/advances.bin");
+            std::fs::write(file, &bytes).unwrap();
+        }
+        assert!(bytes == ADVANCES, "GONIO_UPDATE=1 writes them anew");
+    }
 
     #[test]
     fn both_weights_are_there_and_have_the_signs_of_plots() {
