@@ -101,8 +101,8 @@ pub struct Progress {
     pub rays: RayCounts,
     /// Time spent so far.
     pub elapsed: Duration,
-    /// [`Film::noise`] so far.
-    pub noise: f64,
+    /// [`Film::noise`] so far, where it is a target: it takes a look at every pixel.
+    pub noise: Option<f64>,
 }
 
 /// Why a rendering ended.
@@ -169,13 +169,13 @@ pub fn expose(
     let target = options.target;
     let (start, before) = (Instant::now(), exposure.elapsed);
     let (first, taken_before) = (exposure.samples.start, exposure.film.samples());
-    let stop = |exposure: &Exposure, noise: f64, next: &Next| {
+    let stop = |exposure: &Exposure, noise: Option<f64>, next: &Next| {
         let whole = matches!(next, Next::Pass { begun: false, .. });
         if matches!(next, Next::Nothing) {
             Some(Stop::Samples)
         } else if whole
             && exposure.samples.end - first >= LEAST_SAMPLES_FOR_NOISE
-            && target.noise.is_some_and(|n| noise <= n)
+            && (target.noise.zip(noise)).is_some_and(|(target, noise)| noise <= target)
         {
             Some(Stop::Noise)
         } else {
@@ -185,7 +185,7 @@ pub fn expose(
     };
     let mut next = next_pass(exposure, &target);
     if !exposure.samples.is_empty()
-        && let Some(stop) = stop(exposure, exposure.film.noise(), &next)
+        && let Some(stop) = stop(exposure, target.noise.map(|_| exposure.film.noise()), &next)
     {
         return Ok(stop);
     }
@@ -219,7 +219,7 @@ pub fn expose(
             of: target.samples - first,
             rays: exposure.rays,
             elapsed: exposure.elapsed,
-            noise: exposure.film.noise(),
+            noise: target.noise.map(|_| exposure.film.noise()),
         };
         let asked = progress(&report, exposure);
         next = match next {

@@ -45,6 +45,25 @@ impl Surfaces {
         self.error[i] = point.error;
     }
 
+    /// Point `i`, where `hit` is, without texture coordinates and colours.
+    #[inline]
+    pub fn point(&self, i: usize, hit: &Hit) -> SurfacePoint {
+        SurfacePoint {
+            p: self.p.get(i),
+            error: self.error[i],
+            ng: self.ng.get(i),
+            ns: self.ns.get(i),
+            tangent: self.tangent.get(i),
+            bitangent_sign: 1.0,
+            uv: [0.0; 2],
+            uv1: [0.0; 2],
+            colour: [1.0; 4],
+            t: hit.t,
+            instance: hit.instance,
+            primitive: hit.primitive,
+        }
+    }
+
     /// [`SurfacePoint::offset_origin`] of each point, for its direction.
     ///
     /// # Panics

@@ -1,7 +1,7 @@
 //! [`Choice`], how one of a scene's lights is chosen for a point.
 
 use super::emitter::Emitter;
-use super::tree::LightTree;
+use super::tree::{Choices, Found, LightTree, Points, Walks};
 use super::{Light, Receiver, WHOLE, luminance};
 use crate::{Geometry, Surfaces};
 use gonio_env::Environment;
@@ -51,6 +51,30 @@ pub(super) struct Chosen {
 
 /// The largest number of single precision below 1.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+
+impl Chosen {
+    /// Not by its triangles.
+    #[inline(always)]
+    fn whole((light, probability, rest): (usize, f32, f32)) -> Self {
+        Self {
+            light: light as u32,
+            primitive: WHOLE,
+            probability,
+            rest,
+        }
+    }
+
+    /// By a tree that was chosen with this probability.
+    #[inline(always)]
+    fn below(probability: f32, found: &Found) -> Self {
+        Self {
+            light: found.light,
+            primitive: found.primitive,
+            probability: probability * found.probability as f32,
+            rest: (found.rest as f32).min(BELOW_ONE),
+        }
+    }
+}
 
 impl Choice {
     pub fn new(geometry: &Geometry, lights: &[Light], emitters: &[Option<Emitter>]) -> Self {
@@ -124,18 +148,9 @@ impl Choice {
     /// As [`Choice::choose`], in the instruction set that the caller has chosen.
     #[inline(always)]
     fn choose_here(&self, at: &Receiver, u: f32) -> Option<Chosen> {
-        let whole = |light, (probability, rest)| Chosen {
-            light,
-            primitive: WHOLE,
-            probability,
-            rest,
-        };
         match self {
             Self::None => None,
-            Self::ByPower(lights) => {
-                let (light, probability, rest) = lights.sample(u);
-                Some(whole(light as u32, (probability, rest)))
-            }
+            Self::ByPower(lights) => Some(Chosen::whole(lights.sample(u))),
             Self::Tree {
                 tree,
                 branch,
@@ -148,15 +163,11 @@ impl Choice {
                     branch.sample(u)
                 };
                 if index > 0 {
-                    return Some(whole(infinite[index - 1], (probability, rest)));
+                    let light = infinite[index - 1] as usize;
+                    return Some(Chosen::whole((light, probability, rest)));
                 }
                 let found = tree.choose(at, finer(rest, at.p))?;
-                Some(Chosen {
-                    light: found.light,
-                    primitive: found.primitive,
-                    probability: probability * found.probability as f32,
-                    rest: (found.rest as f32).min(BELOW_ONE),
-                })
+                Some(Chosen::below(probability, &found))
             }
         }
     }
@@ -164,20 +175,24 @@ impl Choice {
     /// [`Choice::choose`] for many points.
     ///
     /// - `normals`: as [`Receiver::normal`]; empty where [`Choice::asks_for_normals`] says that they don't matter
+    /// - `walks`: room to work in
     /// - `chosen`: one a point, written
     pub fn choose_many(
         &self,
         from: &Surfaces,
         normals: &Vectors,
         u: &[f32],
+        walks: &mut Walks,
         chosen: &mut Vec<Chosen>,
     ) {
         chosen.clear();
+        chosen.resize(from.p.len(), Chosen::default());
         dispatch(ChooseMany {
             choice: self,
             from,
             normals,
             u: &u[..from.p.len()],
+            walks,
             chosen,
         });
     }
@@ -251,26 +266,76 @@ struct ChooseMany<'a> {
     from: &'a Surfaces,
     normals: &'a Vectors,
     u: &'a [f32],
-    chosen: &'a mut Vec<Chosen>,
+    walks: &'a mut Walks,
+    chosen: &'a mut [Chosen],
 }
 
 impl Kernel for ChooseMany<'_> {
     type Output = ();
     #[inline(always)]
     fn run<const L: usize>(self) {
-        for i in 0..self.u.len() {
-            let at = Receiver {
-                p: self.from.p.get(i),
-                error: self.from.error[i],
-                normal: if self.normals.is_empty() {
-                    Vec3::zero()
-                } else {
-                    self.normals.get(i)
-                },
-            };
-            let found = self.choice.choose_here(&at, self.u[i]);
-            self.chosen.push(found.unwrap_or_default());
+        match self.choice {
+            Choice::None => {}
+            // There is but one, and nothing of the number is used up.
+            Choice::ByPower(lights) if lights.len() == 1 => {
+                for (chosen, &u) in self.chosen.iter_mut().zip(self.u) {
+                    *chosen = Chosen::whole((0, 1.0, u));
+                }
+            }
+            Choice::ByPower(lights) => {
+                for (chosen, &u) in self.chosen.iter_mut().zip(self.u) {
+                    *chosen = Chosen::whole(lights.sample(u));
+                }
+            }
+            Choice::Tree {
+                tree,
+                branch,
+                infinite,
+                ..
+            } => {
+                self.walks.clear();
+                for (i, (chosen, &u)) in self.chosen.iter_mut().zip(self.u).enumerate() {
+                    let (index, probability, rest) = if infinite.is_empty() {
+                        (0, 1.0, u)
+                    } else {
+                        branch.sample(u)
+                    };
+                    if index > 0 {
+                        let light = infinite[index - 1] as usize;
+                        *chosen = Chosen::whole((light, probability, rest));
+                    } else {
+                        self.walks.push(i as u32, finer(rest, self.from.p.get(i)));
+                    }
+                }
+                let points = Points {
+                    p: &self.from.p,
+                    normals: self.normals,
+                };
+                let mut choices = OfTree {
+                    probability: if infinite.is_empty() {
+                        1.0
+                    } else {
+                        branch.probability(0)
+                    },
+                    chosen: self.chosen,
+                };
+                tree.choose_many::<L>(points, self.walks, &mut choices);
+            }
         }
+    }
+}
+
+/// Where the lights go that the tree chooses.
+struct OfTree<'a> {
+    /// With which the tree was chosen.
+    probability: f32,
+    chosen: &'a mut [Chosen],
+}
+
+impl Choices for OfTree<'_> {
+    #[inline(always)]
+    fn found(&mut self, point: u32, found: &Found) {
+        self.chosen[point as usize] = Chosen::below(self.probability, found);
     }
 }
 

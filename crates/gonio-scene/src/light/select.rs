@@ -1,5 +1,6 @@
 //! [`Lights`], all lights of a scene, and the choice among them.
 
+use super::batch::Together;
 use super::choice::{Choice, flux};
 use super::emitter::Emitter;
 use super::group::{Grouped, LightGroups};
@@ -20,6 +21,7 @@ pub struct Lights {
     /// One for each light that is a surface.
     pub(super) emitters: Vec<Option<Emitter>>,
     pub(super) choice: Choice,
+    pub(super) together: Together,
     environment: Option<u32>,
     geometry: Arc<Geometry>,
     /// As the scene says it, for another environment.
@@ -78,11 +80,13 @@ impl Lights {
             lights.len() as u32 - 1
         });
         let choice = Choice::new(&geometry, &lights, &emitters);
+        let together = Together::new(&lights, &emitters);
         let groups = Grouped::new(group_of.into_iter());
         Self {
             lights,
             emitters,
             choice,
+            together,
             environment,
             geometry,
             given_groups,

@@ -1,6 +1,6 @@
 //! How far a rendering is, for people and for programs, and the wish of the user to stop it.
 
-use gonio_render::{Progress, Target};
+use gonio_render::{Film, Progress, Target};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,9 +23,9 @@ pub(crate) struct Telling {
     kind: ProgressKind,
     bar: ProgressBar,
     target: Target,
-    /// When a line was written last, and whether what came after it is still untold.
+    /// When a line was written last, and what came after it and is still untold.
     last: Option<Instant>,
-    untold: Option<Progress>,
+    untold: Option<(Progress, f64)>,
 }
 
 /// The bar's resolution: it moves by the fraction of the nearest target.
@@ -58,61 +58,64 @@ impl Telling {
         }
     }
 
-    /// Shows how far the rendering is.
-    pub fn update(&mut self, progress: &Progress) {
+    /// Shows how far the rendering of `film` is.
+    pub fn update(&mut self, progress: &Progress, film: &Film) {
+        if self.kind == ProgressKind::Tty && self.bar.is_hidden() {
+            return;
+        }
+        let noise = progress.noise.unwrap_or_else(|| film.noise());
         if self.kind == ProgressKind::Tty {
-            let fraction = self.fraction(progress);
+            let fraction = self.fraction(progress, noise);
             let seconds = progress.elapsed.as_secs_f64();
             self.bar.set_message(format!(
                 "{} spp · {} rays/s · noise {} · {} left",
                 progress.samples,
                 quantity(progress.rays.total() as f64 / seconds.max(1e-9)),
-                percent(progress.noise),
+                percent(noise),
                 clock(left(progress, fraction)),
             ));
             self.bar.set_position((fraction * STEPS as f64) as u64);
             return;
         }
         if self.last.is_some_and(|t| t.elapsed() < LEAST_PAUSE) {
-            self.untold = Some(*progress);
+            self.untold = Some((*progress, noise));
             return;
         }
-        self.say(progress);
+        self.say(progress, noise);
     }
 
     /// Takes the bar away, or says the last line.
     pub fn finish(&mut self) {
-        if let Some(progress) = self.untold {
-            self.say(&progress);
+        if let Some((progress, noise)) = self.untold {
+            self.say(&progress, noise);
         }
         self.bar.finish_and_clear();
     }
 
     /// Writes a line. Nobody may be listening: that is no reason to fail.
-    fn say(&mut self, progress: &Progress) {
+    fn say(&mut self, progress: &Progress, noise: f64) {
         (self.last, self.untold) = (Some(Instant::now()), None);
-        let fraction = self.fraction(progress);
+        let fraction = self.fraction(progress, noise);
         let _ = match self.kind {
             ProgressKind::Tty => Ok(()),
-            ProgressKind::Json => writeln!(std::io::stderr(), "{}", json(progress, fraction)),
+            ProgressKind::Json => {
+                writeln!(std::io::stderr(), "{}", json(progress, noise, fraction))
+            }
             ProgressKind::Openjd => {
                 let mut out = std::io::stdout().lock();
-                write!(out, "{}", openjd(progress, fraction)).and_then(|()| out.flush())
+                write!(out, "{}", openjd(progress, noise, fraction)).and_then(|()| out.flush())
             }
         };
     }
 
     /// How near the nearest target is, 0 to 1. The noise of a pixel falls with the root of its samples.
-    fn fraction(&self, progress: &Progress) -> f64 {
+    fn fraction(&self, progress: &Progress, noise: f64) -> f64 {
         let by_samples = f64::from(progress.samples) / f64::from(progress.of);
         let by_time = self
             .target
             .time
             .map_or(0.0, |t| progress.elapsed.as_secs_f64() / t.as_secs_f64());
-        let by_noise = self
-            .target
-            .noise
-            .map_or(0.0, |n| (n / progress.noise).powi(2));
+        let by_noise = self.target.noise.map_or(0.0, |n| (n / noise).powi(2));
         by_samples.max(by_time).max(by_noise).clamp(0.0, 1.0)
     }
 }
@@ -123,25 +126,25 @@ fn left(progress: &Progress, fraction: f64) -> Duration {
     Duration::from_secs_f64(seconds.ceil().min(359_999.0))
 }
 
-fn json(progress: &Progress, fraction: f64) -> serde_json::Value {
+fn json(progress: &Progress, noise: f64, fraction: f64) -> serde_json::Value {
     serde_json::json!({
         "event": "progress",
         "samples": progress.samples,
         "of": progress.of,
         "fraction": fraction,
-        "noise": Some(progress.noise).filter(|n| n.is_finite()),
+        "noise": Some(noise).filter(|n| n.is_finite()),
         "rays": progress.rays.total(),
         "seconds": progress.elapsed.as_secs_f64(),
         "seconds_left": left(progress, fraction).as_secs(),
     })
 }
 
-fn openjd(progress: &Progress, fraction: f64) -> String {
+fn openjd(progress: &Progress, noise: f64, fraction: f64) -> String {
     format!(
         "openjd_progress: {:.1}\nopenjd_status: {} samples per pixel, noise {}, {} left\n",
         100.0 * fraction,
         progress.samples,
-        percent(progress.noise),
+        percent(noise),
         clock(left(progress, fraction))
     )
 }
@@ -226,9 +229,10 @@ mod tests {
                 shadow: 300,
             },
             elapsed: Duration::from_secs(10),
-            noise: f64::INFINITY,
+            noise: None,
         };
-        let line = json(&progress, 0.25);
+        let noise = f64::INFINITY;
+        let line = json(&progress, noise, 0.25);
         assert_eq!(
             (&line["event"], &line["of"]),
             (&"progress".into(), &64.into())
@@ -242,7 +246,7 @@ mod tests {
             (&30.into(), &0.25.into())
         );
         assert_eq!(
-            openjd(&progress, 0.25),
+            openjd(&progress, noise, 0.25),
             "openjd_progress: 25.0\nopenjd_status: 16 samples per pixel, noise –, 0:30 left\n"
         );
     }

@@ -241,7 +241,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
             &options,
             &mut exposure,
             |progress, exposure| {
-                telling.update(progress);
+                telling.update(progress, &exposure.film);
                 live.update(&exposure.film);
                 if let Some(checkpoint) = &mut checkpoint {
                     checkpoint.keep(exposure);

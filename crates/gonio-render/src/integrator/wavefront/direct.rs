@@ -22,8 +22,8 @@ pub(super) struct Direct {
     wi: Vectors,
     f: [Vec<f32>; 3],
     pdf: Vec<f32>,
-    /// What is reflected, of the points that any is, if nothing stands in between.
-    reflected: Vec<(u32, [f32; 3])>,
+    /// The points that reflect anything, if nothing stands in between.
+    reflected: Vec<u32>,
     /// The rays that tell, one for each.
     origins: Vectors,
     directions: Vectors,
@@ -104,19 +104,21 @@ impl Direct {
             &mut self.ends,
         );
         // The rays of those that reflect anything move to the front.
-        self.reflected.clear();
-        let [ox, oy, oz] = origins.axes_mut();
-        let [dx, dy, dz] = directions.axes_mut();
-        let columns = [ox, oy, oz, dx, dy, dz, &mut self.ends];
+        let [r, g, b] = self.f.each_ref().map(|c| &c[..count]);
+        self.reflected.resize(count, 0);
+        let mut some = 0;
         for i in 0..count {
-            let reflected = [0, 1, 2].map(|k| self.f[k][i]);
-            if reflected != [0.0; 3] {
-                self.reflected.push((i as u32, reflected));
-            }
+            self.reflected[some] = i as u32;
+            some += usize::from((r[i] != 0.0) | (g[i] != 0.0) | (b[i] != 0.0));
         }
-        for column in columns {
-            for (to, (i, _)) in self.reflected.iter().enumerate() {
-                column[to] = column[*i as usize];
+        self.reflected.truncate(some);
+        if some < count {
+            let [ox, oy, oz] = origins.axes_mut();
+            let [dx, dy, dz] = directions.axes_mut();
+            for column in [ox, oy, oz, dx, dy, dz, &mut self.ends] {
+                for (to, &i) in self.reflected.iter().enumerate() {
+                    column[to] = column[i as usize];
+                }
             }
         }
         self.ends.truncate(self.reflected.len());
@@ -130,8 +132,8 @@ impl Direct {
     /// The points that reflect anything, and what.
     pub fn contributions(&self) -> impl Iterator<Item = (usize, [f32; 3])> + '_ {
         let seen = |&(_, hidden): &(_, &bool)| !*hidden;
-        let all = self.reflected.iter().zip(&self.hidden);
-        all.filter(seen).map(|(&(i, light), _)| (i as usize, light))
+        let all = self.reflected.iter().zip(&self.hidden).filter(seen);
+        all.map(|(&i, _)| (i as usize, [0, 1, 2].map(|c| self.f[c][i as usize])))
     }
 
     /// The light that was sampled at point `i`.

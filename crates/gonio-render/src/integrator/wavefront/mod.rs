@@ -20,7 +20,7 @@ use gonio_brdf::Model;
 use gonio_env::{EnvSamples, Guide};
 use gonio_num::Vectors;
 use gonio_radiometry::sequence::{SampleStreams, SamplerKind};
-use gonio_scene::{Hit, Scene};
+use gonio_scene::{Hit, Material, Scene, SurfacePoint, Surfaces};
 use paths::Paths;
 use scatter::Scatter;
 use surface::Vertices;
@@ -43,8 +43,28 @@ pub(crate) struct Plan<'a> {
     bucket: Vec<u32>,
     /// The material of each bucket.
     material: Vec<u32>,
-    /// Whether each instance emits light.
-    shines: Vec<bool>,
+    /// How each instance emits light.
+    shines: Vec<Shines>,
+}
+
+/// How a surface emits light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shines {
+    Not,
+    /// All over in the same way, so that its texture coordinates don't matter.
+    Evenly,
+    Unevenly,
+}
+
+impl Shines {
+    fn of(material: &Material) -> Self {
+        let emission = &material.emission;
+        match emission.is_lit() {
+            false => Self::Not,
+            true if emission.is_even() && material.opacity.is_opaque() => Self::Evenly,
+            true => Self::Unevenly,
+        }
+    }
 }
 
 /// Instances up to which each has a bucket of its own; of more, those of one material share one.
@@ -90,7 +110,7 @@ impl<'a> Plan<'a> {
             bucket,
             material,
             shines: (instances.iter())
-                .map(|i| scene.materials[i.material as usize].emission.is_lit())
+                .map(|i| Shines::of(&scene.materials[i.material as usize]))
                 .collect(),
         })
     }
@@ -121,6 +141,9 @@ pub(crate) struct Wavefront<'a> {
     survival: Vec<f32>,
     /// Light that the first surface emits, or the environment where there is none.
     emitted: Vec<[f32; 3]>,
+    /// The paths that met a surface that shines evenly, and the points there.
+    lit: Vec<u32>,
+    sources: Surfaces,
     /// The paths that met nothing, and what they see.
     missed: Vec<u32>,
     around: EnvSamples,
@@ -156,6 +179,8 @@ impl<'a> Wavefront<'a> {
             scatter: Scatter::default(),
             survival: Vec::new(),
             emitted: Vec::new(),
+            lit: Vec::new(),
+            sources: Surfaces::default(),
             missed: Vec::new(),
             around: EnvSamples::default(),
             from: Vectors::default(),
@@ -262,8 +287,7 @@ impl<'a> Wavefront<'a> {
             _ => 1,
         };
         let unscales = self.vertices.transmit() || !self.paths.unscaling[0].is_empty();
-        let faces = !self.vertices.receiving.is_empty();
-        (self.next).begin(paths * self.order.len(), unscales, faces);
+        (self.next).begin(paths * self.order.len(), unscales);
         let mut place = 0;
         for which in 0..paths as u32 {
             // After that lights have drawn from the same.
@@ -294,7 +318,7 @@ impl<'a> Wavefront<'a> {
         self.emitted.clear();
         self.emitted.resize(count, [0.0; 3]);
         let paths = &mut self.paths;
-        paths.begin(count, false, false);
+        paths.begin(count, false);
         for (i, id) in paths.id.iter_mut().enumerate() {
             *id = (i * self.plan.paths) as u32;
         }
@@ -310,37 +334,61 @@ impl<'a> Wavefront<'a> {
     /// Follows all rays to what they meet, and takes in the light that comes from there. Afterwards `order` has the paths that met a
     /// surface.
     fn follow(&mut self, segment: u32, light: &mut Gathered<'_>, counts: &mut RayCounts) {
-        let (scene, paths) = (self.plan.scene, &self.paths);
-        let strategies = self.plan.path.strategies(segment.saturating_sub(1), false);
-        counts.nearest += paths.len() as u64;
+        let scene = self.plan.scene;
+        counts.nearest += self.paths.len() as u64;
         self.order.clear();
+        self.lit.clear();
         self.missed.clear();
-        let rays = [&paths.origin, &paths.direction];
+        let rays = [&self.paths.origin, &self.paths.direction];
         scene.geometry.intersect_many(rays, &mut self.hits);
-        for (i, hit) in self.hits.iter().enumerate() {
+        for i in 0..self.hits.len() {
+            let hit = &self.hits[i];
             if hit.t == f32::INFINITY {
                 self.missed.push(i as u32);
                 continue;
             }
             self.order.push(i as u32);
-            if !self.plan.shines[hit.instance as usize] {
-                continue;
-            }
-            let ray = paths.ray(i);
-            let point = scene.geometry.surface(&ray, hit);
-            let radiance = scene.emitted(&point, -ray.direction);
-            if segment == 0 {
-                self.emitted[i] = radiance;
-                light.tell_apart(paths.id[i], light_at(scene, &point), 0, radiance);
-            } else if radiance != [0.0; 3] {
-                let from = paths.receiver(i);
-                let density = (scene.lights).pdf_area(&from, &point, ray.direction);
-                let density = strategies.of_lights(density);
-                let arrived = weighted(paths, i, radiance, density);
-                light.add(paths.id[i], light_at(scene, &point), segment, arrived);
+            match self.plan.shines[hit.instance as usize] {
+                Shines::Not => {}
+                Shines::Evenly => self.lit.push(i as u32),
+                Shines::Unevenly => {
+                    let point = scene.geometry.surface(&self.paths.ray(i), hit);
+                    self.take_in(segment, i, &point, light);
+                }
             }
         }
+        // Neighbours on one instance are found together.
+        let hits = &self.hits;
+        self.lit
+            .sort_unstable_by_key(|&i| hits[i as usize].instance);
+        let mut sources = std::mem::take(&mut self.sources);
+        let rays = [&self.paths.origin, &self.paths.direction];
+        (scene.geometry).surfaces(rays, &self.lit, hits, &mut sources);
+        for k in 0..self.lit.len() {
+            let i = self.lit[k] as usize;
+            let point = sources.point(k, &self.hits[i]);
+            self.take_in(segment, i, &point, light);
+        }
+        self.sources = sources;
         self.look_around(segment, light);
+    }
+
+    /// Takes in the light that a surface emits towards path `i`, which has met it.
+    fn take_in(&mut self, segment: u32, i: usize, point: &SurfacePoint, light: &mut Gathered<'_>) {
+        let (scene, paths) = (self.plan.scene, &self.paths);
+        let direction = paths.direction.get(i);
+        let radiance = scene.emitted(point, -direction);
+        if segment == 0 {
+            self.emitted[i] = radiance;
+            light.tell_apart(paths.id[i], light_at(scene, point), 0, radiance);
+        } else if radiance != [0.0; 3] {
+            let from = self.vertices.receiver(paths.vertex[i] as usize);
+            let strategies = self.plan.path.strategies(segment - 1, false);
+            let density = scene.lights.pdf_area(&from, point, direction);
+            let density = strategies.of_lights(density);
+            let arrived = weighted(paths, i, radiance, density);
+            light.add(paths.id[i], light_at(scene, point), segment, arrived);
+        }
     }
 
     /// Takes in the environment's light where a ray met nothing.
@@ -364,7 +412,8 @@ impl<'a> Wavefront<'a> {
         self.from.resize(self.missed.len());
         for (i, &k) in self.missed.iter().enumerate() {
             around.wi.set(i, paths.direction.get(k as usize));
-            self.from.set(i, paths.from.get(k as usize));
+            let vertex = paths.vertex[k as usize] as usize;
+            self.from.set(i, self.vertices.surfaces.p.get(vertex));
         }
         environment.look_up_many(self.plan.guide, &self.from, around);
         let probability = lights.environment_probability();

@@ -1,7 +1,7 @@
 //! [`Paths`], the paths of a wave between two surfaces.
 
-use gonio_num::{Vec3, Vectors};
-use gonio_scene::{Ray, Receiver};
+use gonio_num::Vectors;
+use gonio_scene::Ray;
 
 /// Paths on their way, as a structure of arrays.
 #[derive(Debug)]
@@ -13,10 +13,8 @@ pub(super) struct Paths {
     pub throughput: [Vec<f32>; 3],
     /// What takes the scaling of radiance by n² out of the throughput, for roulette; empty where nothing scales.
     pub unscaling: [Vec<f32>; 3],
-    /// The surface point that each has left: what lights were sampled from.
-    pub from: Vectors,
-    /// The side of it from which light counts, as [`Receiver::normal`]; empty where lights don't ask for it.
-    pub facing: Vectors,
+    /// The number of the vertex that each has left: what lights were sampled from.
+    pub vertex: Vec<u32>,
     /// The density with which the reflection function drew the direction; ∞ for a single direction, which no light sample finds.
     pub pdf: Vec<f32>,
 }
@@ -29,8 +27,7 @@ impl Paths {
             direction: Vectors::default(),
             throughput: [const { Vec::new() }; 3],
             unscaling: [const { Vec::new() }; 3],
-            from: Vectors::default(),
-            facing: Vectors::default(),
+            vertex: Vec::new(),
             pdf: Vec::new(),
         }
     }
@@ -42,14 +39,14 @@ impl Paths {
     /// Makes room for up to `most` paths, of which there are none yet.
     ///
     /// - `unscales`: whether there is an unscaling
-    /// - `faces`: whether there is a side from which light counts
-    pub fn begin(&mut self, most: usize, unscales: bool, faces: bool) {
-        self.facing.resize(if faces { most } else { 0 });
-        for v in [&mut self.origin, &mut self.direction, &mut self.from] {
+    pub fn begin(&mut self, most: usize, unscales: bool) {
+        for v in [&mut self.origin, &mut self.direction] {
             v.resize(most);
         }
         // Nothing of what was there needs to be written again.
-        self.id.resize(most, 0);
+        for column in [&mut self.id, &mut self.vertex] {
+            column.resize(most, 0);
+        }
         for column in self.throughput.iter_mut().chain([&mut self.pdf]) {
             column.resize(most, 0.0);
         }
@@ -61,29 +58,13 @@ impl Paths {
     /// Ends what [`Paths::begin`] began, with `count` paths.
     pub fn end(&mut self, count: usize) {
         self.id.truncate(count);
-        for v in [&mut self.origin, &mut self.direction, &mut self.from] {
+        for v in [&mut self.origin, &mut self.direction] {
             v.resize(count);
-        }
-        if !self.facing.is_empty() {
-            self.facing.resize(count);
         }
     }
 
     pub fn ray(&self, i: usize) -> Ray {
         Ray::new(self.origin.get(i), self.direction.get(i))
-    }
-
-    /// The point that path `i` has left.
-    pub fn receiver(&self, i: usize) -> Receiver {
-        Receiver {
-            p: self.from.get(i),
-            error: 0.0,
-            normal: if self.facing.is_empty() {
-                Vec3::zero()
-            } else {
-                self.facing.get(i)
-            },
-        }
     }
 
     pub fn throughput(&self, i: usize) -> [f32; 3] {

@@ -1,10 +1,14 @@
 //! [`Scatter`], the directions in which the paths of a wave go on.
 
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
 use super::paths::Paths;
 use super::surface::{Reflects, Vertices, directions};
 use super::{Part, dimension};
 use gonio_brdf::{Brdf, batch};
-use gonio_num::{Vectors, vectors::whole_steps};
+use gonio_num::dispatch::{Kernel, dispatch};
+use gonio_num::{Vec3, Vectors, vectors::whole_steps};
 
 /// One direction a point, drawn by its reflection function.
 #[derive(Debug, Default)]
@@ -18,6 +22,9 @@ pub(super) struct Scatter {
     weight: [Vec<f32>; 3],
     pdf: Vec<f32>,
     delta: Vec<bool>,
+    /// Whether each path goes on, as a number; and the vertices of those that do.
+    alive: Vec<u32>,
+    going: Vec<u32>,
 }
 
 impl Scatter {
@@ -75,13 +82,16 @@ impl Scatter {
     ///
     /// Where the one after the last of them would go.
     pub fn go_on(
-        &self,
+        &mut self,
         vertices: &Vertices<'_>,
         (paths, order): (&Paths, &[u32]),
         part: Part,
         (next, mut place): (&mut Paths, usize),
     ) -> usize {
-        let (unscales, faces) = (!next.unscaling[0].is_empty(), !next.facing.is_empty());
+        let unscales = !next.unscaling[0].is_empty();
+        if part.of == 1 && !unscales && vertices.are_even() {
+            return self.go_on_evenly(vertices, (paths, order), (next, place));
+        }
         for (group, reflects) in vertices.each_group() {
             let even = match &reflects {
                 Reflects::Evenly(model) => Some((model.transmits(), model.relative_ior())),
@@ -140,10 +150,7 @@ impl Scatter {
                 next.id[place] = paths.id[k] + part.which;
                 next.origin.set(place, self.origins.get(i));
                 next.direction.set(place, wi);
-                next.from.set(place, vertices.surfaces.p.get(i));
-                if faces {
-                    next.facing.set(place, vertices.receiving.get(i));
-                }
+                next.vertex[place] = i as u32;
                 for (column, value) in next.throughput.iter_mut().zip(throughput) {
                     column[place] = value;
                 }
@@ -157,4 +164,96 @@ impl Scatter {
         }
         place
     }
+
+    /// [`Scatter::go_on`] from surfaces that reflect alone, each by one function.
+    fn go_on_evenly(
+        &mut self,
+        vertices: &Vertices<'_>,
+        (paths, order): (&Paths, &[u32]),
+        (next, mut place): (&mut Paths, usize),
+    ) -> usize {
+        let count = vertices.len();
+        self.alive.resize(whole_steps(count), 0);
+        dispatch(Alive {
+            pdf: &self.pdf[..count],
+            wi: self.wi_world.axes(),
+            wo: vertices.wo_world.axes(),
+            ng: vertices.surfaces.ng.axes(),
+            alive: &mut self.alive[..count],
+        });
+        let first = place;
+        self.going.resize(count, 0);
+        let weight = self.weight.each_ref().map(|w| &w[..count]);
+        let (pdf, delta) = (&self.pdf[..count], &self.delta[..count]);
+        for (i, (&k, &alive)) in order.iter().zip(&self.alive[..count]).enumerate() {
+            if alive == 0 {
+                continue;
+            }
+            let mut throughput = paths.throughput(k as usize);
+            for (t, w) in throughput.iter_mut().zip(weight) {
+                *t *= w[i];
+            }
+            if throughput == [0.0; 3] {
+                continue;
+            }
+            next.id[place] = paths.id[k as usize];
+            next.vertex[place] = i as u32;
+            for (column, value) in next.throughput.iter_mut().zip(throughput) {
+                column[place] = value;
+            }
+            next.pdf[place] = if delta[i] { f32::INFINITY } else { pdf[i] };
+            self.going[place - first] = i as u32;
+            place += 1;
+        }
+        let going = &self.going[..place - first];
+        let vectors = [
+            (&mut next.origin, &self.origins),
+            (&mut next.direction, &self.wi_world),
+        ];
+        for (to, from) in vectors {
+            for (to, from) in to.axes_mut().into_iter().zip(from.axes()) {
+                for (to, &i) in to[first..place].iter_mut().zip(going) {
+                    *to = from[i as usize];
+                }
+            }
+        }
+        place
+    }
+}
+
+/// Which paths go on: those that have a direction, which lies on the viewer's side of the true surface.
+struct Alive<'a> {
+    pdf: &'a [f32],
+    wi: [&'a [f32]; 3],
+    wo: [&'a [f32]; 3],
+    ng: [&'a [f32]; 3],
+    alive: &'a mut [u32],
+}
+
+impl Kernel for Alive<'_> {
+    type Output = ();
+
+    /// A plain loop over numbers, which a compiler turns into vector instructions by itself.
+    #[inline(always)]
+    fn run<const L: usize>(self) {
+        let count = self.alive.len();
+        let pdf = &self.pdf[..count];
+        let (wi, wo, ng) = (
+            columns(self.wi, count),
+            columns(self.wo, count),
+            columns(self.ng, count),
+        );
+        for i in 0..count {
+            let n = Vec3::new(ng[0][i], ng[1][i], ng[2][i]);
+            let inward = Vec3::new(wi[0][i], wi[1][i], wi[2][i]).dot(n);
+            let outward = Vec3::new(wo[0][i], wo[1][i], wo[2][i]).dot(n);
+            self.alive[i] = u32::from((pdf[i] > 0.0) & (inward * outward > 0.0));
+        }
+    }
+}
+
+/// Columns of a length that a compiler then knows.
+#[inline(always)]
+fn columns(v: [&[f32]; 3], count: usize) -> [&[f32]; 3] {
+    [&v[0][..count], &v[1][..count], &v[2][..count]]
 }

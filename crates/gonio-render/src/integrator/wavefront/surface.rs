@@ -7,7 +7,7 @@ use gonio_num::dispatch::{Kernel, dispatch};
 use gonio_num::lanes::Lanes;
 use gonio_num::{Frame, Real, Vec3, Vectors};
 use gonio_radiometry::sequence::{SampleStreams, SamplerKind};
-use gonio_scene::{Hit, Ray, Surfaces, facing_frame};
+use gonio_scene::{Hit, Ray, Receiver, Surfaces, facing_frame};
 
 /// Surface points in the order of their materials, with local frames.
 pub(super) struct Vertices<'a> {
@@ -178,6 +178,15 @@ impl<'a> Vertices<'a> {
         })
     }
 
+    /// Whether each of the surfaces here reflects by one function, and lets nothing through.
+    pub fn are_even(&self) -> bool {
+        let plain = |g: &Group| {
+            let model = self.plan.models[g.material as usize];
+            model.is_some_and(|model| !model.transmits())
+        };
+        self.groups.iter().all(plain)
+    }
+
     /// Whether anything here lets light through.
     pub fn transmit(&self) -> bool {
         self.each_group().any(|(_, reflects)| match reflects {
@@ -242,6 +251,19 @@ impl<'a> Vertices<'a> {
             s: self.s.load(at),
             t: self.t.load(at),
             n: self.n.load(at),
+        }
+    }
+
+    /// Vertex `i` as lights see it.
+    pub fn receiver(&self, i: usize) -> Receiver {
+        Receiver {
+            p: self.surfaces.p.get(i),
+            error: 0.0,
+            normal: if self.receiving.is_empty() {
+                Vec3::zero()
+            } else {
+                self.receiving.get(i)
+            },
         }
     }
 

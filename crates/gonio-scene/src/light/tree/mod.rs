@@ -11,6 +11,7 @@
 mod bounds;
 mod build;
 mod cone;
+mod many;
 mod source;
 #[cfg(test)]
 mod tests;
@@ -22,6 +23,7 @@ use bounds::{COLUMNS, LightBounds};
 use gonio_num::Vec3;
 use gonio_num::dispatch::{Kernel, dispatch};
 use gonio_num::lanes::Lanes;
+pub(super) use many::{Choices, Points, Walks};
 use source::Source;
 
 /// Children of a node.
@@ -110,7 +112,13 @@ impl LightTree {
     /// Chooses a leaf for a point. Nothing where no light may arrive. It is quick within a [`Kernel`] alone.
     #[inline(always)]
     pub fn choose(&self, at: &Receiver, u: f64) -> Option<Found> {
-        let (mut u, mut probability, mut node) = (u, 1.0, 0);
+        self.choose_below(0, at, u, 1.0)
+    }
+
+    /// The rest of the way, from a node that is reached with this probability.
+    #[inline(always)]
+    fn choose_below(&self, node: usize, at: &Receiver, u: f64, probability: f64) -> Option<Found> {
+        let (mut u, mut probability, mut node) = (u, probability, node);
         loop {
             let importance = self.nodes[node].importance(at);
             let total = total(&importance);

@@ -1,10 +1,10 @@
 use super::*;
 use crate::light::choice::Choice;
-use crate::light::{LightTarget, SpotCone, WHOLE};
-use crate::{Material, Ray, Scene, SceneBuilder, Shape, TriangleMesh};
+use crate::light::{LightSamples, LightTarget, SpotCone, WHOLE};
+use crate::{Material, Ray, Scene, SceneBuilder, Shape, Surfaces, TriangleMesh};
 use gonio_brdf::ModelSpec;
 use gonio_env::{Environment, Guide};
-use gonio_num::{Affine3, Real};
+use gonio_num::{Affine3, Real, Vectors};
 use gonio_radiometry::sequence::Rng;
 use gonio_radiometry::warp::uniform_sphere;
 use std::sync::Arc;
@@ -306,5 +306,51 @@ fn lights_that_nothing_tells_apart_are_still_a_tree() {
             .map(|l| tree_of(&scene).probability(&at, l, WHOLE))
             .sum();
         assert!((total - 1.0).abs() < 1e-12, "{total}");
+    }
+}
+
+/// Any number of points together find what each finds alone: lights, densities, directions and radiances, to the bit.
+#[test]
+fn many_points_sample_what_each_samples() {
+    for (lights, points) in [(900, 1000), (900, 1), (12, 500)] {
+        let mut rng = Rng::from_name("many_points_sample_what_each_samples");
+        let scene = everything("many_points_sample_what_each_samples", lights);
+        let (mut from, mut normals) = (Surfaces::default(), Vectors::default());
+        from.resize(points);
+        normals.resize(points);
+        let receivers: Vec<Receiver> = (0..points).map(|_| receiver(&mut rng)).collect();
+        for (i, at) in receivers.iter().enumerate() {
+            from.p.set(i, at.p);
+            from.error[i] = at.error;
+            normals.set(i, at.normal);
+        }
+        let mut column = || -> Vec<f32> { (0..points).map(|_| rng.next_f32()).collect() };
+        let (choice, u, v) = (column(), column(), column());
+        let mut found = LightSamples::default();
+        // Twice: what the first call leaves behind has no part in the second.
+        for _ in 0..2 {
+            let guide = Guide::Luminance;
+            (scene.lights).sample_many(guide, &from, &normals, &choice, [&u, &v], &mut found);
+        }
+        let mut carrying = 0;
+        for (i, at) in receivers.iter().enumerate() {
+            let one = scene.lights.sample(at, choice[i], [u[i], v[i]]);
+            let Some(one) = one else {
+                assert_eq!(found.pdf[i], 0.0, "{i}");
+                continue;
+            };
+            carrying += 1;
+            assert_eq!((found.light[i], found.pdf[i]), (one.light, one.pdf), "{i}");
+            assert_eq!(found.wi.get(i), one.wi, "{i}");
+            assert_eq!(found.delta[i], one.delta, "{i}");
+            assert_eq!([0, 1, 2].map(|c| found.radiance[c][i]), one.radiance, "{i}");
+            match one.target {
+                LightTarget::Infinite => assert!(found.infinite[i], "{i}"),
+                LightTarget::Point(p) => {
+                    assert_eq!((found.infinite[i], found.target.get(i)), (false, p), "{i}");
+                }
+            }
+        }
+        assert!(points == 1 || carrying > points / 3, "{carrying}");
     }
 }
