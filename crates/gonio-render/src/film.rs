@@ -3,6 +3,7 @@
 mod binned;
 mod kept;
 mod layers;
+mod levels;
 mod pixel;
 pub(crate) mod record;
 mod row;
@@ -15,6 +16,7 @@ pub(crate) use row::{FilmRow, Place};
 
 use crate::RenderError;
 use gonio_image::Image;
+use levels::Levels;
 use rayon::prelude::*;
 use triple::{Nearest, Triple};
 
@@ -68,6 +70,8 @@ pub struct Film {
     triples: Vec<Triple>,
     /// One a pixel where materials are kept.
     nearest: Vec<Nearest>,
+    /// One a pixel where samples are told apart by their brightness.
+    levels: Vec<Levels>,
     rejected: Rejected,
 }
 
@@ -97,6 +101,7 @@ impl Film {
             pixels: vec![PixelSums::default(); pixels],
             triples: vec![Triple::default(); pixels * kept.triples()],
             nearest: vec![Nearest::default(); if kept.material { pixels } else { 0 }],
+            levels: vec![Levels::default(); if kept.reweighted { pixels } else { 0 }],
             rejected: Rejected::default(),
         })
     }
@@ -111,12 +116,11 @@ impl Film {
             });
         }
         let count = u64::from(width) * u64::from(height);
-        let material = if kept.material {
-            size_of::<Nearest>()
-        } else {
-            0
-        };
-        let each = size_of::<PixelSums>() + kept.triples() * size_of::<Triple>() + material;
+        let with = |kept: bool, size: usize| if kept { size } else { 0 };
+        let each = size_of::<PixelSums>()
+            + kept.triples() * size_of::<Triple>()
+            + with(kept.material, size_of::<Nearest>())
+            + with(kept.reweighted, size_of::<Levels>());
         let bytes = count.saturating_mul(each as u64);
         // A pixel's index is a 32-bit number in the sample sequences.
         if bytes > LIMIT_BYTES || count > u64::from(u32::MAX) {
@@ -163,12 +167,14 @@ impl Film {
     pub(crate) fn rows_mut(&mut self) -> Vec<FilmRow<'_>> {
         let (kept, width) = (self.kept, self.width as usize);
         let (mut triples, mut nearest) = (&mut self.triples[..], &mut self.nearest[..]);
+        let mut levels = &mut self.levels[..];
         let rows = self.pixels.chunks_exact_mut(width);
         rows.map(|pixels| FilmRow {
             kept,
             pixels,
             triples: front(&mut triples, width * kept.triples()),
             nearest: front(&mut nearest, if kept.material { width } else { 0 }),
+            levels: front(&mut levels, if kept.reweighted { width } else { 0 }),
         })
         .collect()
     }

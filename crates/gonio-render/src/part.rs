@@ -20,8 +20,9 @@
 //! for each) and of depth (2), then the sums of albedo (3) and normal (3) in units of 2⁻²⁴, doubled, those of negative sums 1 less than
 //! twice their amount; hits; samples: 32. The layers that the header's `kept` has add to them: the position two sums of three numbers, of
 //! positive components and of negative ones, and `direct`, `indirect` and each group of lights one such sum, of 9 numbers: the places of the
-//! highest digits (3), then the digits (2 for each of three). The material comes last: the bits of a single-precision number, the squared
-//! distance of a sample from the pixel's middle, and 1 and the index of the material, or 0. A digit of place t weighs 2^(32t − 1075), and the first digit of a sum is that of the highest place.
+//! highest digits (3), then the digits (2 for each of three). Then the material: the bits of a single-precision number, the squared
+//! distance of a sample from the pixel's middle, and 1 and the index of the material, or 0; after it, with `reweighted`, three sums for each of 16 levels of
+//! brightness, in units of 2⁻³¹ of it. A digit of place t weighs 2^(32t − 1075), and the first digit of a sum is that of the highest place.
 
 mod merge;
 mod read;

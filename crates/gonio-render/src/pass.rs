@@ -458,6 +458,7 @@ mod tests {
                 direct: true,
                 indirect: true,
                 groups: scene.lights.groups().len() as u32,
+                reweighted: true,
             };
             let split = Split::new(&kept, &scene.lights);
             let plan = Plan::new(&scene, &options.integrator, &split).unwrap();

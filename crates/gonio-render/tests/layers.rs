@@ -59,6 +59,7 @@ fn everything(scene: &Scene) -> Kept {
         direct: true,
         indirect: true,
         groups: scene.lights.groups().len() as u32,
+        reweighted: true,
     }
 }
 

@@ -48,6 +48,7 @@ fn settings() -> RenderOptions {
             direct: true,
             indirect: true,
             groups: 2,
+            reweighted: true,
         },
         ..options(INTEGRATORS[1], SAMPLERS[1], 12, SPP)
     }
@@ -269,8 +270,25 @@ fn parts_that_do_not_belong_together_are_refused() {
         &[&a, &path],
         &[
             "fewer.gonio",
-            "other layers: position, material, direct, indirect, expected position, material, direct, indirect, groups as in",
+            "other layers: position, material, direct, indirect, reweighted, expected position, material, direct, indirect, groups, reweighted as in",
         ],
+    );
+    let as_they_are = RenderOptions {
+        keep: Kept {
+            reweighted: false,
+            ..settings().keep
+        },
+        ..settings()
+    };
+    let without_levels = Label {
+        identity: Identity::new("00ff", &camera(), &as_they_are),
+        ..label(Some(8))
+    };
+    let path = folder.path().join("plain.gonio");
+    part::write(&path, &without_levels, &taken(&scene, 3..8, 2)).unwrap();
+    refused(
+        &[&a, &path],
+        &["plain.gonio", "other layers", "groups, reweighted as in"],
     );
     refused(&[&folder.path().to_owned()], &["a folder"]);
     refused(

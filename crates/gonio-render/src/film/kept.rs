@@ -4,7 +4,8 @@ use crate::RenderError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Layers that take room of their own in a film: 112 bytes a pixel for the position, 8 for the material, 56 for each share of the radiance.
+/// Layers that take room of their own in a film: 112 bytes a pixel for the position, 8 for the material, 56 for each share of the radiance, 384
+/// for samples told apart by their brightness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Kept {
     /// Where the camera's rays meet the first surface, world space.
@@ -18,6 +19,9 @@ pub struct Kept {
     pub indirect: bool,
     /// Shares of as many groups of lights, which add up to the picture; 0: they are not told apart.
     pub groups: u32,
+    /// Samples told apart by their brightness, for the picture in which fireflies weigh less, [`Film::reweighted`](crate::Film::reweighted).
+    #[serde(default)]
+    pub reweighted: bool,
 }
 
 /// Sums of three numbers that a position takes: components that are positive and those that are negative.
@@ -31,6 +35,7 @@ impl Kept {
         direct: false,
         indirect: false,
         groups: 0,
+        reweighted: false,
     };
 
     /// Shares of the radiance: the direct one, the indirect one, then one for each group.
@@ -81,6 +86,7 @@ impl fmt::Display for Kept {
             (self.direct, "direct"),
             (self.indirect, "indirect"),
             (self.groups > 0, "groups"),
+            (self.reweighted, "reweighted"),
         ];
         let names: Vec<&str> = (all.iter())
             .filter(|(kept, _)| *kept)
@@ -105,12 +111,13 @@ mod tests {
             direct: true,
             indirect: true,
             groups: 3,
+            reweighted: true,
         };
         assert_eq!(all.places(), (Some(0), Some(1), Some(2)));
         assert_eq!((all.shares(), all.triples()), (5, 7));
         assert_eq!(
             all.to_string(),
-            "position, material, direct, indirect, groups"
+            "position, material, direct, indirect, groups, reweighted"
         );
         let some = Kept {
             indirect: true,

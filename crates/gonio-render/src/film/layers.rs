@@ -2,7 +2,7 @@
 
 use super::kept::{Kept, OF_POSITION};
 use super::{Film, PixelSums};
-use gonio_image::{Channel, ChannelData, Chromaticities, Layers};
+use gonio_image::{Channel, ChannelData, Chromaticities, Image, Layers};
 
 /// What the indices in a film are names of.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -33,7 +33,7 @@ impl Names {
 
 impl Film {
     /// All layers for an EXR file: R G B, `albedo`, `normal`, `depth.Z`, `variance` and `samples.count`, and those that were asked for:
-    /// `position`, `material.index`, `direct`, `indirect`, and one for each group of lights.
+    /// `position`, `material.index`, `direct`, `indirect`, one for each group of lights, and `reweighted`.
     ///
     /// Depth and position are means over the samples that hit a surface, ∞ and 0 where none did; the normal is the unnormalised mean; the
     /// variance is that of the mean; the index of the material is counted from 1, and 0 where the pixel's middle shows no surface.
@@ -87,6 +87,9 @@ impl Film {
                 samples: ChannelData::Uint(self.nearest.iter().map(|n| n.material).collect()),
             });
         }
+        if let Some(image) = self.reweighted() {
+            channels.extend(picture("reweighted", &image));
+        }
         for (share, layer) in names_of_shares(&kept, names).into_iter().enumerate() {
             for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
                 let mean = |i: usize| self.share(i, share)[c] as f32;
@@ -113,6 +116,14 @@ impl Film {
         let at = i * self.kept.triples();
         [0, 1].map(|k| self.triples[at + k].value())
     }
+}
+
+/// The channels of a layer that is a picture.
+pub fn picture<'a>(layer: &'a str, image: &'a Image) -> impl Iterator<Item = Channel> + 'a {
+    (["R", "G", "B"].into_iter().enumerate()).map(move |(c, name)| Channel {
+        name: format!("{layer}.{name}"),
+        samples: ChannelData::Float(image.pixels.iter().map(|p| p[c]).collect()),
+    })
 }
 
 /// The layers of the shares, in their order.

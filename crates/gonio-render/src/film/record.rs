@@ -2,6 +2,7 @@
 
 use super::Film;
 use super::kept::Kept;
+use super::levels::{self, Levels};
 use super::pixel::PixelSums;
 use super::triple::{Nearest, Triple};
 
@@ -13,12 +14,17 @@ const COMMON: usize = 32;
 const OF_TRIPLE: usize = 9;
 /// Numbers of the material: squared distance, index.
 const OF_MATERIAL: usize = 2;
+/// Numbers of the levels of brightness: three for each.
+const OF_LEVELS: usize = 3 * levels::COUNT;
 
 /// Numbers of a pixel in a film that keeps these layers: first those of every film, then those of the position and of each share, then those
-/// of the material.
+/// of the material, then those of the levels of brightness.
 pub(crate) fn columns_of(kept: &Kept) -> usize {
-    let material = if kept.material { OF_MATERIAL } else { 0 };
-    COMMON + OF_TRIPLE * kept.triples() + material
+    let with = |kept: bool, count: usize| if kept { count } else { 0 };
+    COMMON
+        + OF_TRIPLE * kept.triples()
+        + with(kept.material, OF_MATERIAL)
+        + with(kept.reweighted, OF_LEVELS)
 }
 
 /// The number of bytes that each number takes, 0 to 8: enough for the largest in the film.
@@ -34,6 +40,7 @@ pub(crate) struct Record {
     sums: PixelSums,
     triples: Vec<Triple>,
     nearest: Option<Nearest>,
+    levels: Option<Levels>,
 }
 
 impl Widths {
@@ -103,6 +110,13 @@ impl Widths {
             let (distance, material) = (next()?, next()?);
             record.nearest = Some(Nearest { distance, material });
         }
+        record.levels = None;
+        if self.kept.reweighted {
+            let levels = record.levels.insert(Levels::default());
+            for sum in levels.0.as_flattened_mut() {
+                *sum = numbers.next()?;
+            }
+        }
         record.is_sound(count).then_some(())
     }
 }
@@ -113,6 +127,7 @@ impl Record {
         self.sums.is_sound(count)
             && self.triples.iter().all(|t| t.is_sound(samples))
             && self.nearest.is_none_or(|n| n.is_sound())
+            && self.levels.is_none_or(|l| l.is_sound(samples))
     }
 }
 
@@ -126,6 +141,9 @@ impl Film {
             sum.merge(other);
         }
         if let (Some(own), Some(other)) = (self.nearest.get_mut(index), record.nearest) {
+            own.merge(other);
+        }
+        if let (Some(own), Some(other)) = (self.levels.get_mut(index), &record.levels) {
             own.merge(other);
         }
     }
@@ -144,6 +162,7 @@ impl Film {
         numbers(pixel)
             .chain(triples.iter().flat_map(of_triple))
             .chain(self.nearest.get(index).into_iter().flat_map(of_material))
+            .chain((self.levels.get(index).into_iter()).flat_map(|l| l.0.as_flattened().to_vec()))
     }
 }
 
@@ -211,6 +230,7 @@ mod tests {
             direct: true,
             indirect: true,
             groups: 2,
+            reweighted: true,
         };
         for kept in [Kept::NOTHING, all] {
             let mut film = Film::keeping(kept, 3, 1).unwrap();
@@ -258,6 +278,7 @@ mod tests {
             assert_eq!(again.pixels, film.pixels);
             assert_eq!(again.triples, film.triples);
             assert_eq!(again.nearest, film.nearest);
+            assert_eq!(again.levels, film.levels);
             // More samples than there were taken, and a place that no sum has.
             assert_eq!(widths.read(&bytes, 8, &mut found), None);
             bytes[0] = 255;

@@ -1,6 +1,7 @@
 //! [`FilmRow`], the pixels of a row, and how samples enter them.
 
 use super::kept::Kept;
+use super::levels::Levels;
 use super::triple::{Nearest, Triple};
 use super::{FilmSample, PixelSums, Rejected, RejectedSample};
 
@@ -12,6 +13,8 @@ pub(crate) struct FilmRow<'a> {
     pub(super) triples: &'a mut [Triple],
     /// One a pixel, or none.
     pub(super) nearest: &'a mut [Nearest],
+    /// One a pixel, or none.
+    pub(super) levels: &'a mut [Levels],
 }
 
 /// Where a sample belongs.
@@ -67,6 +70,9 @@ impl FilmRow<'_> {
         self.pixels[x].add(&sample);
         if self.kept == Kept::NOTHING {
             return;
+        }
+        if let Some(levels) = self.levels.get_mut(x) {
+            levels.add(sample.radiance);
         }
         let each = self.kept.triples();
         let triples = &mut self.triples[x * each..(x + 1) * each];

@@ -1,7 +1,7 @@
 //! Parts put together.
 
 use super::{Exposure, Header, Label, open};
-use crate::RenderError;
+use crate::{Kept, RenderError};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -38,6 +38,11 @@ impl Parts {
     /// The samples that they hold together.
     pub fn samples(&self) -> Range<u32> {
         self.parts[0].1.first..self.parts[self.parts.len() - 1].1.end
+    }
+
+    /// The layers that they keep.
+    pub fn kept(&self) -> Kept {
+        self.parts[0].1.kept
     }
 
     /// What they are parts of.

@@ -225,7 +225,7 @@ fn mix(
     let mut left_out: Vec<String> = Vec::new();
     layers.channels.retain(|channel| {
         let (layer, _) = channel.name.rsplit_once('.').unwrap_or_default();
-        let unknown = ["variance", "direct", "indirect"].contains(&layer);
+        let unknown = ["variance", "direct", "indirect", "reweighted", "denoised"].contains(&layer);
         if unknown && !left_out.iter().any(|l| l == layer) {
             left_out.push(layer.to_owned());
         }

@@ -86,6 +86,10 @@ pub(super) struct Arguments {
         help_heading = "Picture"
     )]
     layers: Vec<LayerName>,
+    /// A second picture in which fireflies weigh less, the layer 'reweighted' of EXR files: samples much brighter than the others count as far as others
+    /// like them are near. It is too dark where such light is rare; R, G and B stay as they are. 384 bytes a pixel
+    #[arg(long, help_heading = "Picture")]
+    reweight_fireflies: bool,
     #[command(flatten, next_help_heading = "Picture")]
     picture: PictureArguments,
     #[command(flatten, next_help_heading = "Picture")]
@@ -192,6 +196,9 @@ enum SamplerName {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     progress::listen();
+    if !arguments.reweight_fireflies {
+        arguments.picture.check_shown(&Kept::NOTHING)?;
+    }
     let chosen = range::of(arguments, |name| std::env::var(name).ok())?;
     let outputs = outputs(arguments, &chosen)?;
     let range = chosen.samples.clone();
@@ -504,6 +511,7 @@ fn kept(arguments: &Arguments, scene: &Scene) -> Kept {
             true => scene.lights.groups().len() as u32,
             false => 0,
         },
+        reweighted: arguments.reweight_fireflies,
     }
 }
 

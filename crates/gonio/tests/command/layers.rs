@@ -130,6 +130,125 @@ fn a_scene_without_groups_is_told_so() {
     assert_eq!(layers.rgb("group.default"), layers.rgb(""));
 }
 
+/// Fireflies weigh less in a layer of its own, and in what a PNG shows if that is asked for; R, G and B stay. Parts, checkpoints and any split make the
+/// same file, which says so.
+#[test]
+fn fireflies_weigh_less_where_that_is_asked_for() {
+    let place = Place::new();
+    // The bulb's light by way of a mirrored ball is found by chance.
+    let mirror = "[[material]]\nname = \"mirror\"\nmodel = \"mirror\"\n\n[[shape]]\nkind = \"sphere\"\nmaterial = \"mirror\"";
+    let room = ROOM.replacen(
+        "[[shape]]\nkind = \"sphere\"\nmaterial = \"grey\"",
+        mirror,
+        1,
+    );
+    let scene = place.write(
+        "room.toml",
+        room.replace("[30, 20, 10]", "[3000, 2000, 1000]"),
+    );
+    let usual = ["render", &scene, "--size", "16x12", "--spp", "5"];
+    let with = |more: &[&str]| {
+        let how = [&usual[..], &["--reweight-fireflies"], more].concat();
+        place.good(&how)
+    };
+    place.good(&[&usual[..], &["-o", "plain.exr", "-o", "plain.png"]].concat());
+    with(&["-o", "a.exr", "-o", "mean.png"]);
+    with(&[
+        "-o",
+        "one-thread.exr",
+        "-o",
+        "shown.png",
+        "--show",
+        "reweighted",
+        "--threads",
+        "1",
+    ]);
+    assert_eq!(place.read("one-thread.exr"), place.read("a.exr"));
+    assert_eq!(place.read("mean.png"), place.read("plain.png"));
+    assert_ne!(place.read("shown.png"), place.read("plain.png"));
+    let layers = |name: &str| Layers::read_exr(&place.path().join(name)).unwrap();
+    let (plain, found) = (layers("plain.exr"), layers("a.exr"));
+    assert_eq!(found.rgb(""), plain.rgb(""));
+    assert!(plain.rgb("reweighted").is_none());
+    assert_ne!(found.rgb("reweighted"), found.rgb(""));
+    with(&["--samples", "0:3", "-o", "first.gonio"]);
+    with(&["--samples", "3:5", "-o", "second.gonio"]);
+    place.good(&[
+        "merge",
+        "second.gonio",
+        "first.gonio",
+        "-o",
+        "merged.exr",
+        "-o",
+        "merged.png",
+        "--show",
+        "reweighted",
+    ]);
+    assert_eq!(place.read("merged.exr"), place.read("a.exr"));
+    assert_eq!(place.read("merged.png"), place.read("shown.png"));
+    place.good(&[
+        "render",
+        &scene,
+        "--size",
+        "16x12",
+        "--spp",
+        "3",
+        "--reweight-fireflies",
+        "--checkpoint",
+        "a.checkpoint",
+        "-o",
+        "begun.exr",
+    ]);
+    with(&[
+        "--checkpoint",
+        "a.checkpoint",
+        "--resume",
+        "-o",
+        "resumed.exr",
+    ]);
+    assert_eq!(place.read("resumed.exr"), place.read("a.exr"));
+    let info = place.json(&["info", "a.exr", "--json"]);
+    assert!(
+        info["gonio.reweighted"]
+            .as_str()
+            .unwrap()
+            .contains("biased")
+    );
+    assert!(
+        place
+            .json(&["info", "plain.exr", "--json"])
+            .get("gonio.reweighted")
+            .is_none()
+    );
+    assert_eq!(
+        place.json(&["info", "first.gonio", "--json"])["layers"],
+        "reweighted"
+    );
+    place.good(&[&usual[..], &["--samples", "3:5", "-o", "other.gonio"]].concat());
+    place.bad(
+        &["merge", "first.gonio", "other.gonio", "-o", "b.exr"],
+        3,
+        &["other layers: none, expected reweighted"],
+    );
+    place.bad(
+        &[
+            "merge",
+            "other.gonio",
+            "-o",
+            "b.gonio",
+            "--show",
+            "reweighted",
+        ],
+        2,
+        &["--show reweighted", "--reweight-fireflies"],
+    );
+    place.bad(
+        &[&usual[..], &["--show", "reweighted"]].concat(),
+        2,
+        &["--show reweighted", "--reweight-fireflies"],
+    );
+}
+
 /// Parts have the layers, the names of materials and groups, and make the file that one machine makes.
 #[test]
 fn merged_parts_have_the_layers_of_the_whole() {

@@ -83,7 +83,7 @@ impl<'a> Live<'a> {
         if self.preview.is_none() && self.tev.is_none() {
             return;
         }
-        let image = film.image();
+        let image = self.how.shown(film);
         if let Some(path) = self.preview
             && let Err(e) = image.write_png(path, self.how.tone.tonemap, self.how.tone.exposure)
         {

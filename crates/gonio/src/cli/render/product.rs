@@ -7,6 +7,7 @@ use crate::cli::summary::rejected_in_words;
 use gonio_image::Image;
 use gonio_image::tonemap::ToneMap;
 use gonio_render::part::{self, Exposure, Label};
+use gonio_render::{Film, Kept};
 use std::path::{Path, PathBuf};
 
 /// How pictures are written.
@@ -14,9 +15,41 @@ use std::path::{Path, PathBuf};
 pub(in crate::cli) struct PictureArguments {
     #[command(flatten)]
     pub tone: ToneArguments,
+    /// What PNG and HDR files and previews show: the mean of all samples (mean), or the picture of --reweight-fireflies (reweighted)
+    #[arg(long, value_enum, value_name = "PICTURE", default_value_t = Shown::Mean)]
+    pub show: Shown,
     /// Write the time spent into EXR files: two pictures of the same samples are then no longer the same file
     #[arg(long)]
     pub write_time: bool,
+}
+
+/// A picture that a film has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(in crate::cli) enum Shown {
+    Mean,
+    Reweighted,
+}
+
+impl PictureArguments {
+    /// Fails unless the picture that shall be shown is among the layers that are kept.
+    pub fn check_shown(&self, kept: &Kept) -> Result<(), Failure> {
+        if self.show == Shown::Reweighted && !kept.reweighted {
+            return Err(Failure::usage(
+                "--show reweighted: the samples are not told apart by their brightness",
+            )
+            .with_help("render with --reweight-fireflies"));
+        }
+        Ok(())
+    }
+
+    /// The picture to show.
+    pub fn shown(&self, film: &Film) -> Image {
+        let reweighted = match self.show {
+            Shown::Mean => None,
+            Shown::Reweighted => film.reweighted(),
+        };
+        reweighted.unwrap_or_else(|| film.image())
+    }
 }
 
 /// How light becomes the colours of a screen.
@@ -86,7 +119,7 @@ fn write(
         "exr" => film
             .layers(&label.names, metadata(label, exposure, how.write_time))
             .write_exr(path)?,
-        _ => how.tone.write(&film.image(), path)?,
+        _ => how.tone.write(&how.shown(film), path)?,
     }
     Ok(())
 }
@@ -141,6 +174,10 @@ fn metadata(label: &Label, exposure: &Exposure, with_time: bool) -> Vec<(String,
     if kept.direct || kept.indirect {
         let words = "light after at most one reflection, passages through surfaces included; emission that is seen itself is direct";
         all.push(("gonio.direct", words.into()));
+    }
+    if kept.reweighted {
+        let words = "reweighted.R, G and B: biased, fireflies weigh less (Zirr et al. 2018), kappa 8; R, G and B are the mean of all samples";
+        all.push(("gonio.reweighted", words.into()));
     }
     if kept.material {
         all.push((MATERIALS, listed(&label.names.materials)));
