@@ -372,7 +372,7 @@ fn headers_that_lie_are_errors() {
     assert!(with("\"first\":2", "\"first\":3").contains("pixel 0, 0"));
     assert!(with("\"columns\":[1", "\"columns\":[9").contains("columns"));
     // Layers that the columns don't have, and too many of them; groups without names.
-    assert!(with("\"position\":true", "\"position\":false").contains("70 widths of 0 to 8"));
+    assert!(with("\"position\":true", "\"position\":false").contains("118 widths of 0 to 8"));
     assert!(with("\"groups\":2", "\"groups\":4000000000").contains("more than the limit"));
     assert!(
         with("\"groups\":[\"fill\",", "\"groups\":[").contains("2, as many as there are groups")
@@ -393,7 +393,7 @@ fn exposures_that_do_not_fit_are_errors() {
     assert!(try_with(&mut other_size, &settings()).is_err());
     let mut without = Exposure::new(12, 12, 0).unwrap();
     let error = try_with(&mut without, &settings()).unwrap_err().to_string();
-    let all = "position, material, direct, indirect, groups";
+    let all = "position, material, direct, indirect, groups, reweighted";
     assert_eq!(
         error,
         format!("layers is {all}, expected those of the film")
