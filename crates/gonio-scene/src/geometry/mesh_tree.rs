@@ -27,10 +27,7 @@ impl MeshTree {
             .filter(|&i| !mesh.is_degenerate(i))
             .map(|i| i as u32)
             .collect();
-        let boxes = ids
-            .iter()
-            .map(|&i| Aabb::around(mesh.corners(i as usize)))
-            .collect();
+        let boxes = ids.iter().map(|&i| Aabb::around(mesh.corners(i as usize)));
         let mut blocks = Vec::with_capacity(ids.len() / 4);
         let tree = WideTree::build(boxes, Purpose::Triangles, &mut |leaf| {
             let first = blocks.len();

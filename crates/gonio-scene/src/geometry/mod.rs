@@ -137,7 +137,7 @@ impl Geometry {
             .collect();
         let mut order = Vec::with_capacity(visible.len());
         let top = WideTree::build(
-            visible.iter().map(|&i| placed[i as usize].bounds).collect(),
+            visible.iter().map(|&i| placed[i as usize].bounds),
             Purpose::Instances,
             &mut |leaf| {
                 let first = order.len() as u32;

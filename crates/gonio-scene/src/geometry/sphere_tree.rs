@@ -37,7 +37,7 @@ impl SphereTree {
     /// Of these instances, each a sphere.
     pub(crate) fn build(placed: &[Placed], instances: &[u32]) -> Self {
         let of = |i: u32| &placed[i as usize];
-        let boxes = instances.iter().map(|&i| of(i).bounds).collect();
+        let boxes = instances.iter().map(|&i| of(i).bounds);
         let mut blocks = Vec::with_capacity(instances.len() / 4);
         let tree = WideTree::build(boxes, Purpose::Triangles, &mut |leaf| {
             let first = blocks.len();
