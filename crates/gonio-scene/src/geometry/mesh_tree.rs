@@ -91,6 +91,18 @@ impl<'a, K: Kernel, const ANY: bool> Triangles<'a, K, ANY> {
         nearest: &'a mut Nearest,
     ) -> Self {
         let exact = TriangleRay::new(ray.origin, ray.direction);
+        Self::with(kernel, tree, exact, instance, nearest)
+    }
+
+    /// With the ray prepared.
+    #[inline(always)]
+    pub(crate) fn with(
+        kernel: K,
+        tree: &'a MeshTree,
+        exact: TriangleRay,
+        instance: u32,
+        nearest: &'a mut Nearest,
+    ) -> Self {
         Self {
             kernel,
             blocks: &tree.blocks,

@@ -1,5 +1,6 @@
 //! The two ray queries, and the choice of instructions for them.
 
+use super::beam::{self, Asked};
 use super::coherence::are_coherent;
 use super::kernel::Kernel;
 use super::mesh_tree::{MeshTree, Triangles};
@@ -119,6 +120,21 @@ impl Geometry {
         }
         for &(instance, tree) in &self.simple.meshes {
             let tree = &self.trees[tree as usize];
+            if coherent {
+                let placed = &self.placed[instance as usize];
+                let asked = Asked {
+                    tree,
+                    instance,
+                    placed,
+                    bounds: if placed.identity {
+                        &self.bounds
+                    } else {
+                        &tree.tree.bounds
+                    },
+                };
+                beam::search::<K, ANY>(kernel, &asked, rays, nearest);
+                continue;
+            }
             let mut rays = MeshRays::<K, ANY> {
                 kernel,
                 geometry: self,

@@ -74,7 +74,7 @@ fn announce<K: Kernel, V: Visitor>(kernel: K, tree: &WideTree, visitor: &V, chil
 }
 
 /// A walk that can be left after any step.
-struct Walk {
+pub(super) struct Walk {
     stack: Stack,
     current: u32,
 }
@@ -82,23 +82,23 @@ struct Walk {
 impl Walk {
     /// At the root.
     #[inline(always)]
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             stack: Stack::new(),
             current: 0,
         }
     }
 
-    /// Back to the root.
+    /// At this node or leaf, with nothing else to visit.
     #[inline(always)]
-    fn restart(&mut self) {
+    pub(super) fn start_at(&mut self, child: u32) {
         self.stack.clear();
-        self.current = 0;
+        self.current = child;
     }
 
     /// Visits one node or leaf, and announces the next; returns whether that was the last.
     #[inline(always)]
-    fn step<K: Kernel, V: Visitor>(
+    pub(super) fn step<K: Kernel, V: Visitor>(
         &mut self,
         kernel: K,
         tree: &WideTree,
@@ -244,7 +244,7 @@ fn walk_in_turns<K: Kernel, R: Rays>(kernel: K, tree: &WideTree, rays: &mut R) {
                 i += 1;
             } else if let Some((next, of_next)) = rays.next() {
                 // Its stack is empty, or holds what no longer counts.
-                walk.restart();
+                walk.start_at(0);
                 *ray = next;
                 *visitor = of_next;
                 i += 1;

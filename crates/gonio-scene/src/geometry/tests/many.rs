@@ -2,9 +2,11 @@
 
 use super::agreement::{bits, ray};
 use super::scenes::{Random, bumpy_sphere, instance, one, soup};
+use crate::geometry::beam::{self, Asked};
 use crate::geometry::coherence::are_coherent;
+use crate::geometry::kernel::{Kernel, Portable};
 use crate::geometry::nearest::Nearest;
-use crate::geometry::{Geometry, Shape, kernel::Portable};
+use crate::geometry::{Geometry, Shape};
 use crate::{Hit, Ray};
 use gonio_num::{Affine3, Vec3, Vectors};
 use std::sync::Arc;
@@ -59,7 +61,7 @@ fn many_rays_at_once_are_each_alone() {
             (1003, true),
         ] {
             let mut rays: Vec<Ray> = (0..count).map(|_| ray(&mut random, &corners)).collect();
-            // As a camera has them, too: those are walked one by one.
+            // As a camera has them, too: those go together.
             let eye = random.direction() * 3.0;
             if coherent {
                 let (mut toward, mut aside) = (-eye.normalize(), random.direction() * 1e-3);
@@ -118,4 +120,115 @@ fn many_rays_at_once_are_each_alone() {
             );
         }
     }
+}
+
+/// The nearest hit of each ray, and whether there is any before its end.
+fn through_beams<K: Kernel>(
+    kernel: K,
+    geometry: &Geometry,
+    rays: [&Vectors; 2],
+    ends: &[f32],
+) -> Vec<(Nearest, Nearest)> {
+    let asked = Asked {
+        tree: &geometry.trees[0],
+        instance: 0,
+        placed: &geometry.placed[0],
+        bounds: &geometry.bounds,
+    };
+    let mut nearest = vec![Nearest::none(f32::INFINITY); ends.len()];
+    let mut any: Vec<Nearest> = ends.iter().map(|t| Nearest::none(*t)).collect();
+    beam::search::<K, false>(kernel, &asked, rays, &mut nearest);
+    beam::search::<K, true>(kernel, &asked, rays, &mut any);
+    nearest.into_iter().zip(any).collect()
+}
+
+/// Beams of a camera, at corners and edges of triangles, along every axis, near and so far away that single precision hardly tells the
+/// triangles apart: what a beam leaves out, no ray of it meets alone.
+#[test]
+fn beams_leave_nothing_out() {
+    let mut random = Random::named("beams_leave_nothing_out");
+    let (mut met, mut count) = (0, 0);
+    for (mesh, far) in [
+        (bumpy_sphere(90, 45, 0.1), 0.0),
+        (bumpy_sphere(30, 15, 0.1), 3e4),
+        (soup(&mut random, 3000, 0.02), 0.0),
+        (soup(&mut random, 3000, 0.3), 1e3),
+    ] {
+        let mut mesh = mesh;
+        let offset = random.direction() * far;
+        for p in &mut mesh.positions {
+            *p += offset;
+        }
+        let geometry = one(Shape::Mesh(Arc::new(mesh.clone())), Affine3::identity());
+        for round in 0..60 {
+            let mut toward = random.direction();
+            match round % 3 {
+                // Nearly along an axis: components of both signs.
+                0 => {
+                    let axis = random.below(3);
+                    let mut d = (random.direction() * 0.02).to_array();
+                    d[axis] = if random.signed() < 0.0 { -1.0 } else { 1.0 };
+                    toward = Vec3::from(d).normalize();
+                }
+                // Nearly along a diagonal: the longest component changes.
+                1 => {
+                    let sign = |random: &mut Random| if random.signed() < 0.0 { -1.0 } else { 1.0 };
+                    let d = [0; 3].map(|_| sign(&mut random));
+                    toward = (Vec3::from(d) + random.direction() * 0.01).normalize();
+                }
+                _ => {}
+            }
+            let eye = offset - toward * (1.5 + 3.0 * random.unit());
+            let centre = offset + random.direction() * 0.7;
+            let (mut origins, mut directions) = (Vectors::default(), Vectors::default());
+            origins.resize(256);
+            directions.resize(256);
+            let mut ends = Vec::new();
+            for i in 0..256 {
+                let target = if i % 2 == 0 {
+                    let [a, b, c] = mesh.corners(random.below(mesh.indices.len()));
+                    let s = random.unit();
+                    let on = if i % 4 == 0 { a * s + b * (1.0 - s) } else { c };
+                    // Narrow beams and wide ones.
+                    if round % 2 == 0 || (on - centre).length() < 0.15 {
+                        on
+                    } else {
+                        centre
+                    }
+                } else {
+                    centre + random.point() * 0.08
+                };
+                let lens = random.point() * 1e-3;
+                origins.set(i, eye + lens);
+                directions.set(i, (target - eye).normalize());
+                ends.push(if i % 5 == 0 {
+                    4.0 * random.unit()
+                } else {
+                    f32::INFINITY
+                });
+            }
+            let columns = [&origins, &directions];
+            let found = through_beams(Portable, &geometry, columns, &ends);
+            for i in 0..256 {
+                let mut ray = Ray::new(origins.get(i), directions.get(i));
+                let truth = geometry.intersect(&ray);
+                assert_eq!(bits(found[i].0.hit()), bits(truth), "{far} {ray:?}");
+                ray.t_max = ends[i];
+                let hidden = geometry.occluded(&ray);
+                assert_eq!(found[i].1.found(), hidden, "{far} {ray:?}");
+                met += usize::from(truth.is_some());
+                count += 1;
+            }
+            #[cfg(target_arch = "x86_64")]
+            if let Some(kernel) = crate::geometry::avx2::Avx2::detect() {
+                let fast = through_beams(kernel, &geometry, columns, &ends);
+                for (fast, found) in fast.iter().zip(&found) {
+                    assert_eq!(bits(fast.0.hit()), bits(found.0.hit()));
+                    assert_eq!(fast.1.found(), found.1.found());
+                }
+            }
+        }
+    }
+    // Both answers are common.
+    assert!(met > count / 10 && met < count * 9 / 10, "{met} of {count}");
 }
