@@ -32,15 +32,16 @@ pub(crate) fn add<const K: usize>(bins: &mut [u64; K], top: &mut u8, value: f64)
     let mantissa = (bits & ((1 << 52) - 1)) | 1 << 52;
     // The place of the leading bit, which is bit 52 of the mantissa: at most (2046 + 52) / 32 = 65.
     raise(bins, top, ((exponent + 52) / 32) as u8);
-    for (i, bin) in bins.iter_mut().enumerate() {
-        // By how much the number's unit is above that of the digit: below 44, as the number has no digit above the top.
-        let above = exponent as i32 - 32 * (i32::from(*top) - i as i32);
-        let digit = if above < 0 {
-            mantissa >> above.unsigned_abs().min(63)
-        } else {
-            mantissa << above
-        };
-        *bin += digit & u64::from(u32::MAX);
+    // By how much the number's unit is above that of the lowest digit that is kept: 12 at most with K = 2 and 43 with K = 3, as the number
+    // has no digit above the top.
+    let above = exponent as i32 - 32 * (i32::from(*top) - (K as i32 - 1));
+    let digits = if above < 0 {
+        u128::from(mantissa >> above.unsigned_abs().min(63))
+    } else {
+        u128::from(mantissa) << above
+    };
+    for (i, bin) in bins.iter_mut().rev().enumerate() {
+        *bin += u64::from((digits >> (32 * i)) as u32);
     }
 }
 

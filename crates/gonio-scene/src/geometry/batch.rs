@@ -357,7 +357,7 @@ impl Kernel for Run<'_> {
             let left = (self.order.len() - done).min(L);
             let mut of = [self.order[self.order.len() - 1]; L];
             of[..left].copy_from_slice(&self.order[done..done + left]);
-            let here = self.at + done..self.at + done + left;
+            let here = self.at + done;
             let [local, ng, ns, tangent] = match self.local {
                 Local::Sphere => self.on_sphere(&of),
                 Local::Triangles(mesh) => self.on_triangles(mesh, &of),
@@ -370,8 +370,9 @@ impl Kernel for Run<'_> {
             };
             let p = to_world.transform_point(local);
             let error = self.placed.error_at(p).to_single() + Lanes::splat(f32::MIN_POSITIVE);
-            error.store(&mut self.surfaces.error[here.clone()]);
-            store(&mut self.surfaces.p, here.clone(), p.to_single());
+            // Lanes past the end are written over by the runs that follow.
+            error.store(&mut self.surfaces.error[here..]);
+            self.surfaces.p.store(here, p.to_single());
             let (ng, ns, tangent) = match &self.placed.flat {
                 Some(flat) => flat.over(),
                 None => {
@@ -383,19 +384,10 @@ impl Kernel for Run<'_> {
                     )
                 }
             };
-            store(&mut self.surfaces.ng, here.clone(), ng);
-            store(&mut self.surfaces.ns, here.clone(), ns);
-            store(&mut self.surfaces.tangent, here, tangent);
+            self.surfaces.ng.store(here, ng);
+            self.surfaces.ns.store(here, ns);
+            self.surfaces.tangent.store(here, tangent);
             done += L;
         }
     }
-}
-
-/// Writes the first lanes of `v`.
-#[inline(always)]
-fn store<const L: usize>(to: &mut Vectors, range: std::ops::Range<usize>, v: Vec3<Lanes<L>>) {
-    let [x, y, z] = to.axes_mut();
-    v.x.store(&mut x[range.clone()]);
-    v.y.store(&mut y[range.clone()]);
-    v.z.store(&mut z[range]);
 }
