@@ -4,6 +4,7 @@ use crate::film::{Film, FilmRow, Place, Rejected};
 use crate::integrator::dimension;
 use crate::integrator::shares::{Shares, Split};
 use crate::integrator::wavefront::{Gathered, Plan, Wavefront};
+use crate::integrator::worth::{Judge, Worth};
 use crate::{RayCounts, RenderOptions};
 use gonio_num::{Vec3, Vectors};
 use gonio_radiometry::sequence::{SampleStream, SampleStreams, SamplerKind};
@@ -58,9 +59,10 @@ pub(crate) fn take_pass(
     options: &RenderOptions,
     film: &mut Film,
     wanted: &Wanted<'_>,
+    worth: Option<&Worth>,
 ) -> RayCounts {
     let split = Split::new(&film.kept(), &scene.lights);
-    let plan = Plan::new(scene, &options.integrator, &split);
+    let plan = Plan::new(scene, &options.integrator, &split, worth);
     let parts: Vec<(RayCounts, Rejected)> = film
         .rows_mut()
         .into_par_iter()
@@ -70,7 +72,7 @@ pub(crate) fn take_pass(
             |waves, (y, mut row)| match waves {
                 Some(waves) => waves.take(camera, options, y as u32, &mut row, wanted),
                 None => {
-                    let shot = (scene, camera, options, &split);
+                    let shot = (scene, camera, options, &split, worth);
                     take_row(shot, y as u32, &mut row, wanted)
                 }
             },
@@ -84,9 +86,18 @@ pub(crate) fn take_pass(
     counts
 }
 
+/// What is taken, and how.
+type Shooting<'a> = (
+    &'a Scene,
+    &'a Camera,
+    &'a RenderOptions,
+    &'a Split,
+    Option<&'a Worth>,
+);
+
 /// The samples of a row, one after the other.
 fn take_row(
-    (scene, camera, options, split): (&Scene, &Camera, &RenderOptions, &Split),
+    (scene, camera, options, split, worth): Shooting<'_>,
     y: u32,
     row: &mut FilmRow<'_>,
     wanted: &Wanted<'_>,
@@ -112,6 +123,7 @@ fn take_row(
                 &mut stream,
                 &mut counts,
                 &mut shares,
+                worth.map(|worth| Judge::of(worth, options, [x, y])),
             );
             let place = Place {
                 pixel: [x, y],
@@ -134,6 +146,9 @@ struct Row<'a> {
     offset: [Vec<f32>; 2],
     lens: [Vec<f32>; 2],
     off_centre: Vec<f32>,
+    /// Of each sample's pixel, where roulette knows the scene.
+    importance: Vec<f32>,
+    worth: Option<&'a Worth>,
     origins: Vectors,
     directions: Vectors,
     light: Gathered<'a>,
@@ -149,6 +164,8 @@ impl<'a> Row<'a> {
             offset: [const { Vec::new() }; 2],
             lens: [const { Vec::new() }; 2],
             off_centre: Vec::new(),
+            importance: Vec::new(),
+            worth: plan.worth(),
             origins: Vectors::default(),
             directions: Vectors::default(),
             light: Gathered::new(plan),
@@ -174,7 +191,8 @@ impl<'a> Row<'a> {
             self.places.extend(places.by_ref().take(self.wave));
             self.start(camera, options, y);
             let (light, rays) = (&mut self.light, [&self.origins, &self.directions]);
-            self.waves.radiance(rays, &self.streams, light, &mut counts);
+            let importance = &self.importance;
+            (self.waves).radiance(rays, &self.streams, importance, light, &mut counts);
             for (i, &(x, index)) in self.places.iter().enumerate() {
                 let place = Place {
                     pixel: [x, y],
@@ -190,6 +208,11 @@ impl<'a> Row<'a> {
     /// The camera's rays of the wave, as [`camera_ray`] has them one by one.
     fn start(&mut self, camera: &Camera, options: &RenderOptions, y: u32) {
         let (width, height) = (options.width, options.height);
+        self.importance.clear();
+        if let Some(worth) = self.worth {
+            let of = |&(x, _): &(u32, u32)| worth.importance(options, [x, y]);
+            self.importance.extend(self.places.iter().map(of));
+        }
         self.streams.clear();
         for &(x, k) in &self.places {
             let (sequence, index) = options.screen.place(width, [x, y], k);
@@ -286,7 +309,7 @@ mod tests {
     use super::*;
     use crate::Integrator;
     use crate::film::Kept;
-    use crate::integrator::{EnvironmentSampling, Path};
+    use crate::integrator::{EnvironmentSampling, Path, Roulette};
     use gonio_brdf::ModelSpec;
     use gonio_env::{Environment, Layout};
     use gonio_image::Image;
@@ -439,6 +462,17 @@ mod tests {
                     ..Path::default()
                 },
             ),
+            (
+                panorama(),
+                EnvironmentSampling::Luminance,
+                SamplerKind::Sobol,
+                Path {
+                    max_bounces: 9,
+                    splitting: 2,
+                    roulette: Roulette::Efficiency,
+                    ..Path::default()
+                },
+            ),
         ] {
             let (scene, camera) = everything(environment);
             let options = RenderOptions {
@@ -461,7 +495,8 @@ mod tests {
                 reweighted: true,
             };
             let split = Split::new(&kept, &scene.lights);
-            let plan = Plan::new(&scene, &options.integrator, &split).unwrap();
+            let worth = Worth::learn(&scene, &camera, &options);
+            let plan = Plan::new(&scene, &options.integrator, &split, worth.as_ref()).unwrap();
             let mut waves = Row::new(&plan);
             let wanted = Wanted::All(3..10);
             let mut lit = 0;
@@ -469,7 +504,7 @@ mod tests {
             for y in 0..options.height {
                 let mut one = Film::keeping(kept, options.width, 1).unwrap();
                 let mut many = one.clone();
-                let shot = (&scene, &camera, &options, &split);
+                let shot = (&scene, &camera, &options, &split, worth.as_ref());
                 let alone = take_row(shot, y, &mut one.rows_mut()[0], &wanted);
                 let together = waves.take(&camera, &options, y, &mut many.rows_mut()[0], &wanted);
                 assert_eq!(alone, together, "{guide:?}, row {y}");

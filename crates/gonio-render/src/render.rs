@@ -2,6 +2,7 @@
 
 use crate::adaptive::{self, Active, Goal};
 use crate::film::{Film, Kept};
+use crate::integrator::worth::Worth;
 use crate::pass::{Wanted, take_pass};
 use crate::{Exposure, Integrator, PixelFilter, RayCounts, RenderError, Screen};
 use gonio_radiometry::sequence::SamplerKind;
@@ -189,6 +190,7 @@ pub fn expose(
     {
         return Ok(stop);
     }
+    let worth = Worth::learn(scene, camera, options);
     let mut piece = 1;
     while let Next::Pass { active, left, .. } = &next {
         let count = piece.min(*left);
@@ -202,7 +204,14 @@ pub fn expose(
                 end: target.most(),
             },
         };
-        exposure.rays += take_pass(scene, camera, options, &mut exposure.film, &wanted);
+        exposure.rays += take_pass(
+            scene,
+            camera,
+            options,
+            &mut exposure.film,
+            &wanted,
+            worth.as_ref(),
+        );
         exposure.samples.end = first + exposure.film.samples_per_pixel();
         exposure.elapsed = before + start.elapsed();
         let share = match active {

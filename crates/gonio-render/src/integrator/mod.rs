@@ -6,10 +6,11 @@ pub mod path;
 pub(crate) mod shares;
 mod vertex;
 pub(crate) mod wavefront;
+pub(crate) mod worth;
 
 pub use direct::Direct;
 pub use environment::EnvironmentSampling;
-pub use path::Path;
+pub use path::{Path, Roulette};
 pub use vertex::Vertex;
 
 use crate::film::{FilmSample, FirstSurface};
@@ -17,6 +18,7 @@ use gonio_radiometry::sequence::SampleStream;
 use gonio_scene::{Interior, Ray, Scene, SurfacePoint};
 use shares::Shares;
 use std::ops::AddAssign;
+use worth::Judge;
 
 /// How the reflection equation is solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,10 +55,14 @@ impl Integrator {
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> FilmSample {
-        self.radiance_in_shares(scene, ray, interior, stream, counts, &mut Shares::none())
+        let mut shares = Shares::none();
+        self.radiance_in_shares(scene, ray, interior, stream, counts, &mut shares, None)
     }
 
     /// [`Integrator::radiance`], told apart.
+    ///
+    /// - `judge`: what Russian roulette knows of the scene, for [`Roulette::Efficiency`]
+    #[allow(clippy::too_many_arguments, reason = "a ray with all that it needs")]
     pub(crate) fn radiance_in_shares(
         &self,
         scene: &Scene,
@@ -65,6 +71,7 @@ impl Integrator {
         stream: &mut SampleStream,
         counts: &mut RayCounts,
         shares: &mut Shares<'_>,
+        judge: Option<Judge<'_>>,
     ) -> FilmSample {
         let (mut interior, mut left) = (*interior, [1.0; 3]);
         let arrived = vertex::arrive(scene, ray, &mut interior, &mut left, 0, stream, counts);
@@ -84,8 +91,8 @@ impl Integrator {
                 };
                 let emitted = scene.emitted(&vertex.point, -ray.direction);
                 shares.add(light_at(scene, &vertex.point), 0, emitted);
-                let reflected =
-                    self.reflected_in_shares(scene, vertex, &interior, stream, counts, shares);
+                let reflected = self
+                    .reflected_in_shares(scene, vertex, &interior, stream, counts, shares, judge);
                 (sum(emitted, reflected), Some(first))
             }
         };
@@ -108,9 +115,11 @@ impl Integrator {
         stream: &mut SampleStream,
         counts: &mut RayCounts,
     ) -> [f32; 3] {
-        self.reflected_in_shares(scene, vertex, interior, stream, counts, &mut Shares::none())
+        let mut shares = Shares::none();
+        self.reflected_in_shares(scene, vertex, interior, stream, counts, &mut shares, None)
     }
 
+    #[allow(clippy::too_many_arguments, reason = "a ray with all that it needs")]
     fn reflected_in_shares(
         &self,
         scene: &Scene,
@@ -119,12 +128,15 @@ impl Integrator {
         stream: &mut SampleStream,
         counts: &mut RayCounts,
         shares: &mut Shares<'_>,
+        judge: Option<Judge<'_>>,
     ) -> [f32; 3] {
         match self {
             Self::Direct(direct) => {
                 direct.reflected(scene, &vertex, interior, stream, counts, shares)
             }
-            Self::Path(path) => path.reflected(scene, vertex, interior, stream, counts, shares),
+            Self::Path(path) => {
+                path.reflected(scene, vertex, interior, stream, counts, shares, judge)
+            }
         }
     }
 }

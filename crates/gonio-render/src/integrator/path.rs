@@ -2,6 +2,7 @@
 
 use super::shares::Shares;
 use super::vertex::{Vertex, arrive};
+use super::worth::Judge;
 use super::{
     EnvironmentSampling, RayCounts, dimension, light_at, power_heuristic, product, scaled, sum,
 };
@@ -30,6 +31,20 @@ pub struct Path {
     /// Directions drawn at the first surface, with a path each, 1 to [`Path::MOST`]; a surface that reflects into single directions alone
     /// has one. Powers of two are stratified best.
     pub splitting: u32,
+    /// How roulette judges a path.
+    pub roulette: Roulette,
+}
+
+/// How Russian roulette judges a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Roulette {
+    /// By the energy that it carries.
+    #[default]
+    Throughput,
+    /// By what it is expected to bring for the rays that it will take, compared with the whole picture, from the first surface on
+    /// (Veach 1997, §10.4; Rath et al. 2022, "EARS: Efficiency-aware Russian roulette and splitting"). It is learned from a small picture with
+    /// fixed seeds. Only pictures are: single rays are judged by their energy.
+    Efficiency,
 }
 
 impl Default for Path {
@@ -41,6 +56,7 @@ impl Default for Path {
             environment: EnvironmentSampling::Luminance,
             light_samples: 1,
             splitting: 1,
+            roulette: Roulette::Throughput,
         }
     }
 }
@@ -67,13 +83,26 @@ impl Strategies {
 }
 
 /// A path on its way.
-struct Walk {
+pub(super) struct Walk<'j> {
     interior: Interior,
-    throughput: [f32; 3],
+    pub throughput: [f32; 3],
     /// What takes the scaling of radiance by n² out of the throughput, for roulette.
-    unscaling: [f32; 3],
+    pub unscaling: [f32; 3],
     /// The light so far.
-    total: [f32; 3],
+    pub total: [f32; 3],
+    judge: Option<Judge<'j>>,
+}
+
+impl<'j> Walk<'j> {
+    pub fn new(interior: &Interior, judge: Option<Judge<'j>>) -> Self {
+        Self {
+            interior: *interior,
+            throughput: [1.0; 3],
+            unscaling: [1.0; 3],
+            total: [0.0; 3],
+            judge,
+        }
+    }
 }
 
 impl Path {
@@ -105,12 +134,21 @@ impl Path {
     /// The probability that a path that carries this much goes on. One of several from the first surface is judged as if it were the only one:
     /// it carries its share alone because the others carry theirs.
     #[inline(always)]
-    pub(super) fn survival(&self, carried: f32) -> f32 {
+    pub(super) fn survival(&self, [r, g, b]: [f32; 3]) -> f32 {
         let paths = self.strategies(0, false).directions;
-        (carried * paths as f32).min(0.95)
+        (r.max(g).max(b) * paths as f32).min(0.95)
+    }
+
+    /// The reflection after which roulette may end a path first.
+    ///
+    /// - `judged`: whether it is known what paths are worth
+    #[inline(always)]
+    pub(super) fn first_roulette(&self, judged: bool) -> u32 {
+        if judged { 0 } else { self.roulette_after }
     }
 
     /// Radiance that `vertex` reflects toward its viewer, which is in the bodies of `interior`.
+    #[allow(clippy::too_many_arguments, reason = "a ray with all that it needs")]
     pub(super) fn reflected<'a>(
         &self,
         scene: &'a Scene,
@@ -119,28 +157,19 @@ impl Path {
         stream: &mut SampleStream,
         counts: &mut RayCounts,
         shares: &mut Shares<'_>,
+        judge: Option<Judge<'_>>,
     ) -> [f32; 3] {
         if self.max_bounces == 0 {
             return [0.0; 3];
         }
-        let mut walk = Walk {
-            interior: *interior,
-            throughput: [1.0; 3],
-            unscaling: [1.0; 3],
-            total: [0.0; 3],
-        };
+        let mut walk = Walk::new(interior, judge);
         self.direct(scene, &vertex, 0, &mut walk, stream, counts, shares);
         let paths = self.strategies(0, vertex.model.is_delta()).directions;
         let mut part = stream.split(paths, 0);
         self.go_on(scene, &vertex, &mut walk, &mut part, counts, shares);
         let mut total = walk.total;
         for which in 1..paths {
-            let mut walk = Walk {
-                interior: *interior,
-                throughput: [1.0; 3],
-                unscaling: [1.0; 3],
-                total: [0.0; 3],
-            };
+            let mut walk = Walk::new(interior, judge);
             let mut part = stream.split(paths, which);
             // Summed as waves do, path by path.
             let mut apart = vec![[0.0; 3]; shares.values.len()];
@@ -162,7 +191,7 @@ impl Path {
         &self,
         scene: &'a Scene,
         first: &Vertex<'a>,
-        walk: &mut Walk,
+        walk: &mut Walk<'_>,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
         shares: &mut Shares<'_>,
@@ -180,12 +209,12 @@ impl Path {
     /// Draws a direction, goes there, and takes in what shines there. Nothing where the path ends.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "the state of a path")]
-    fn step<'a>(
+    pub(super) fn step<'a>(
         &self,
         scene: &'a Scene,
         vertex: &Vertex<'a>,
         bounce: u32,
-        walk: &mut Walk,
+        walk: &mut Walk<'_>,
         stream: &mut SampleStream,
         counts: &mut RayCounts,
         shares: &mut Shares<'_>,
@@ -239,9 +268,15 @@ impl Path {
             walk.total = sum(walk.total, arrived);
             shares.add(light_at(scene, &next.point), bounce + 1, arrived);
         }
-        if bounce >= self.roulette_after {
-            let [r, g, b] = product(walk.throughput, walk.unscaling);
-            let survival = self.survival(r.max(g).max(b));
+        if bounce >= self.first_roulette(walk.judge.is_some()) {
+            let carried = product(walk.throughput, walk.unscaling);
+            let survival = match &walk.judge {
+                None => self.survival(carried),
+                Some(judge) => {
+                    let at = ray.origin + ray.direction * next.distance;
+                    judge.survival(at, self.max_bounces - bounce - 1, carried)
+                }
+            };
             stream.seek(base + dimension::ROULETTE);
             if stream.next_1d() >= survival {
                 return None;
@@ -254,12 +289,12 @@ impl Path {
     /// Adds light that comes straight from the lights, with the weight that joins it to the directions drawn by the reflection function.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "the state of a path")]
-    fn direct(
+    pub(super) fn direct(
         &self,
         scene: &Scene,
         vertex: &Vertex<'_>,
         bounce: u32,
-        walk: &mut Walk,
+        walk: &mut Walk<'_>,
         stream: &SampleStream,
         counts: &mut RayCounts,
         shares: &mut Shares<'_>,

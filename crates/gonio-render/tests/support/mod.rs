@@ -7,13 +7,13 @@ use gonio_brdf::ModelSpec;
 use gonio_env::Environment;
 use gonio_num::{Affine3, Vec3};
 use gonio_radiometry::sequence::SamplerKind;
-use gonio_render::integrator::{Direct, EnvironmentSampling, Path};
+use gonio_render::integrator::{Direct, EnvironmentSampling, Path, Roulette};
 use gonio_render::{Film, Integrator, Kept, PixelFilter, RenderOptions, Screen, Target, render};
 use gonio_scene::{Camera, Light, Material, Scene, SceneBuilder, Shape};
 use gonio_verify::statistics::{Moments, t_test};
 use std::ops::ControlFlow;
 
-pub const INTEGRATORS: [Integrator; 3] = [
+pub const INTEGRATORS: [Integrator; 4] = [
     Integrator::Direct(Direct {
         environment: EnvironmentSampling::Luminance,
         without_cosine: false,
@@ -24,8 +24,10 @@ pub const INTEGRATORS: [Integrator; 3] = [
         environment: EnvironmentSampling::Luminance,
         light_samples: 1,
         splitting: 1,
+        roulette: Roulette::Throughput,
     }),
     SPLIT,
+    JUDGED,
 ];
 /// Path tracing with several samples at the first surface.
 pub const SPLIT: Integrator = Integrator::Path(Path {
@@ -34,6 +36,16 @@ pub const SPLIT: Integrator = Integrator::Path(Path {
     environment: EnvironmentSampling::Luminance,
     light_samples: 4,
     splitting: 2,
+    roulette: Roulette::Throughput,
+});
+/// Path tracing with roulette from the first surface on.
+pub const JUDGED: Integrator = Integrator::Path(Path {
+    max_bounces: 64,
+    roulette_after: 4,
+    environment: EnvironmentSampling::Luminance,
+    light_samples: 1,
+    splitting: 1,
+    roulette: Roulette::Efficiency,
 });
 pub const SAMPLERS: [SamplerKind; 2] = [SamplerKind::Independent, SamplerKind::Sobol];
 

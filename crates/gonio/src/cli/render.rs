@@ -18,7 +18,7 @@ use super::terminal::{note, print, print_json, warn};
 use checkpoint::{Checkpoint, CheckpointArguments};
 use gonio_env::Candidates;
 use gonio_radiometry::sequence::SamplerKind;
-use gonio_render::integrator::{Direct, EnvironmentSampling, Path as PathTracer};
+use gonio_render::integrator::{Direct, EnvironmentSampling, Path as PathTracer, Roulette};
 use gonio_render::part::Label;
 use gonio_render::{
     Exposure, Identity, Integrator, Kept, Names, PixelFilter, Rejected, RenderOptions, Screen,
@@ -142,6 +142,10 @@ pub(super) struct Arguments {
     /// Reflections before Russian roulette may end a path; it judges by the energy that the path carries
     #[arg(long, value_name = "N", default_value_t = PathTracer::default().roulette_after, value_parser = parse::whole(0, u32::MAX), allow_hyphen_values = true, help_heading = "Method")]
     roulette_after: u32,
+    /// How Russian roulette judges a path: by the energy that it carries (throughput), or from the first surface on by the light that it is expected to find
+    /// for the rays that it takes, which a small picture tells before (efficiency)
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = RouletteName::Throughput, help_heading = "Method")]
+    roulette: RouletteName,
     /// Light samples at the first surface of each camera ray; powers of two are stratified best
     #[arg(long, value_name = "N", default_value_t = PathTracer::default().light_samples, value_parser = parse::whole(1, PathTracer::MOST), allow_hyphen_values = true, help_heading = "Method")]
     light_samples: u32,
@@ -177,6 +181,12 @@ enum LayerName {
 enum IntegratorName {
     Path,
     Direct,
+}
+
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum RouletteName {
+    Throughput,
+    Efficiency,
 }
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
@@ -481,6 +491,10 @@ fn options(arguments: &Arguments, scene: &Scene, range: &Range<u32>) -> RenderOp
                 roulette_after: arguments.roulette_after,
                 light_samples: arguments.light_samples,
                 splitting: arguments.splitting,
+                roulette: match arguments.roulette {
+                    RouletteName::Throughput => Roulette::Throughput,
+                    RouletteName::Efficiency => Roulette::Efficiency,
+                },
             }),
         },
         sampler: match arguments.sampler {

@@ -5,17 +5,20 @@
 //! those of the one path at a time of `path.rs`, to the bit: a test holds the two together.
 
 mod direct;
+mod gathered;
 mod paths;
 mod scatter;
 mod surface;
 
-use super::shares::{Shares, Split};
+use super::shares::Split;
+use super::worth::{Judge, Worth};
 use super::{
     EnvironmentSampling, Integrator, Path, RayCounts, dimension, light_at, power_heuristic,
     product, scaled, sum,
 };
 use crate::film::{FilmSample, FirstSurface};
 use direct::Direct;
+pub(crate) use gathered::Gathered;
 use gonio_brdf::Model;
 use gonio_env::{EnvSamples, Guide};
 use gonio_num::Vectors;
@@ -36,6 +39,8 @@ pub(crate) struct Plan<'a> {
     paths: usize,
     /// How the light of each sample is told apart.
     split: &'a Split,
+    /// What roulette knows of the scene.
+    worth: Option<&'a Worth>,
     guide: Guide,
     /// For each material its reflection function, if that is the same all over the surface.
     models: Vec<Option<&'a Model<f32, 3>>>,
@@ -73,7 +78,12 @@ const MOST_BUCKETS: usize = 1 << 16;
 impl<'a> Plan<'a> {
     /// Nothing where paths need what waves don't have: surfaces that are partly transparent, bodies that absorb, and the environment
     /// sampled by the surface that it lights.
-    pub fn new(scene: &'a Scene, integrator: &Integrator, split: &'a Split) -> Option<Self> {
+    pub fn new(
+        scene: &'a Scene,
+        integrator: &Integrator,
+        split: &'a Split,
+        worth: Option<&'a Worth>,
+    ) -> Option<Self> {
         let Integrator::Path(path) = integrator else {
             return None;
         };
@@ -105,6 +115,7 @@ impl<'a> Plan<'a> {
             path: *path,
             paths,
             split,
+            worth,
             guide,
             models: scene.materials.iter().map(|m| m.even_model()).collect(),
             bucket,
@@ -116,7 +127,12 @@ impl<'a> Plan<'a> {
     }
 }
 
-impl Plan<'_> {
+impl<'a> Plan<'a> {
+    /// What roulette knows of the scene.
+    pub fn worth(&self) -> Option<&'a Worth> {
+        self.worth
+    }
+
     /// Samples in a wave.
     pub fn wave(&self) -> usize {
         WAVE / self.paths
@@ -195,10 +211,12 @@ impl<'a> Wavefront<'a> {
     ///
     /// - `rays`: origins and directions
     /// - `light`: of each ray, written
+    /// - `importance`: of each ray, where roulette knows the scene: [`Worth::importance`]
     pub fn radiance(
         &mut self,
         rays: [&Vectors; 2],
         streams: &SampleStreams,
+        importance: &[f32],
         light: &mut Gathered<'_>,
         counts: &mut RayCounts,
     ) {
@@ -213,8 +231,9 @@ impl<'a> Wavefront<'a> {
             if segment == most && segment > 0 {
                 break;
             }
-            if segment > self.plan.path.roulette_after {
-                self.roulette(segment - 1);
+            let judged = self.plan.worth.is_some();
+            if segment > self.plan.path.first_roulette(judged) {
+                self.roulette(segment - 1, importance);
             }
             self.sort();
             let rays = [&self.paths.origin, &self.paths.direction];
@@ -428,16 +447,25 @@ impl<'a> Wavefront<'a> {
     }
 
     /// Ends paths that carry little, and lets the others carry their share; as `path.rs` does after reflection `bounce`.
-    fn roulette(&mut self, bounce: u32) {
-        let (path, paths) = (&self.plan.path, &mut self.paths);
+    fn roulette(&mut self, bounce: u32, importance: &[f32]) {
+        let (plan, paths) = (self.plan, &mut self.paths);
+        let path = &plan.path;
         self.survival.resize(paths.len(), 0.0);
         let at = dimension::of_bounce(bounce) + dimension::ROULETTE;
         self.vertices.streams.gather(&self.going, &paths.id);
         self.vertices.streams.draw(at, [&mut self.survival]);
         self.order.retain(|&k| {
             let k = k as usize;
-            let [r, g, b] = product(paths.throughput(k), paths.unscaling(k));
-            let survival = path.survival(r.max(g).max(b));
+            let carried = product(paths.throughput(k), paths.unscaling(k));
+            let survival = match plan.worth {
+                None => path.survival(carried),
+                Some(worth) => {
+                    let importance = importance[paths.id[k] as usize / plan.paths];
+                    let judge = Judge { worth, importance };
+                    let at = paths.origin.get(k) + paths.direction.get(k) * self.hits[k].t;
+                    judge.survival(at, path.max_bounces - bounce - 1, carried)
+                }
+            };
             if self.survival[k] >= survival {
                 return false;
             }
@@ -521,96 +549,4 @@ fn weighted(paths: &Paths, i: usize, radiance: [f32; 3], density: f32) -> [f32; 
 struct Part {
     which: u32,
     of: u32,
-}
-
-/// The samples of a wave as their light comes together.
-#[derive(Debug)]
-pub(crate) struct Gathered<'a> {
-    split: &'a Split,
-    /// Paths of a sample.
-    paths: usize,
-    /// One a ray.
-    pub samples: Vec<FilmSample>,
-    /// One a path.
-    arrived: Vec<[f32; 3]>,
-    /// As many a path as are told apart.
-    shares: Vec<[f32; 3]>,
-}
-
-impl<'a> Gathered<'a> {
-    pub fn new(plan: &Plan<'a>) -> Self {
-        Self {
-            split: plan.split,
-            paths: plan.paths,
-            samples: Vec::new(),
-            arrived: Vec::new(),
-            shares: Vec::new(),
-        }
-    }
-
-    fn begin(&mut self, count: usize) {
-        let black = FilmSample {
-            radiance: [0.0; 3],
-            first: None,
-        };
-        self.samples.clear();
-        self.samples.resize(count, black);
-        self.arrived.clear();
-        self.arrived.resize(count * self.paths, [0.0; 3]);
-        self.shares.clear();
-        let shares = count * self.paths * self.split.count();
-        self.shares.resize(shares, [0.0; 3]);
-    }
-
-    /// Adds the paths of each sample.
-    fn end(&mut self) {
-        let of_samples = self.arrived.chunks_exact(self.paths);
-        for (sample, arrived) in self.samples.iter_mut().zip(of_samples) {
-            for &one in arrived {
-                sample.radiance = sum(sample.radiance, one);
-            }
-        }
-        let each = self.split.count();
-        if each == 0 || self.paths == 1 {
-            return;
-        }
-        for of_sample in self.shares.chunks_exact_mut(each * self.paths) {
-            let (all, others) = of_sample.split_at_mut(each);
-            for of_path in others.chunks_exact(each) {
-                for (all, &one) in all.iter_mut().zip(of_path) {
-                    *all = sum(*all, one);
-                }
-            }
-        }
-    }
-
-    /// The shares of sample `i`.
-    pub fn shares(&self, i: usize) -> &[[f32; 3]] {
-        let each = self.split.count();
-        let first = i * self.paths * each;
-        &self.shares[first..first + each]
-    }
-
-    /// Adds light to the path `id`, as [`Shares::add`] does to its shares.
-    #[inline(always)]
-    fn add(&mut self, id: u32, light: Option<u32>, reflections: u32, radiance: [f32; 3]) {
-        let arrived = &mut self.arrived[id as usize];
-        *arrived = sum(*arrived, radiance);
-        self.tell_apart(id, light, reflections, radiance);
-    }
-
-    /// [`Shares::add`] alone.
-    #[inline(always)]
-    fn tell_apart(&mut self, id: u32, light: Option<u32>, reflections: u32, arrived: [f32; 3]) {
-        let each = self.split.count();
-        if each == 0 {
-            return;
-        }
-        let first = id as usize * each;
-        let mut shares = Shares {
-            split: self.split,
-            values: &mut self.shares[first..first + each],
-        };
-        shares.add(light, reflections, arrived);
-    }
 }
