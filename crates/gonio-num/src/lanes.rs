@@ -50,17 +50,18 @@ impl<const N: usize> Lanes<N> {
             return Self::load(source);
         }
         let mut r = Self([fill; N]);
-        r.0[..source.len()].copy_from_slice(source);
+        copy_tail(source, &mut r.0);
         r
     }
 
     /// Writes the lanes to the front of `target`; as many as fit, if it is shorter than `N`.
     #[inline(always)]
     pub fn store(self, target: &mut [f32]) {
-        if target.len() >= N {
-            target[..N].copy_from_slice(&self.0);
+        if let Some(front) = target.first_chunk_mut() {
+            *front = self.0;
         } else {
-            target.copy_from_slice(&self.0[..target.len()]);
+            let count = target.len();
+            copy_tail(&self.0[..count], target);
         }
         end_of_step();
     }
@@ -73,6 +74,13 @@ impl<const N: usize> Lanes<N> {
     pub fn extract(self, i: usize) -> f32 {
         self.0[i]
     }
+}
+
+/// Copies `from` to the front of `to`. A function of its own: beside it in one function, copies of whole steps would be made by a call as well.
+#[cold]
+#[inline(never)]
+fn copy_tail(from: &[f32], to: &mut [f32]) {
+    to[..from.len()].copy_from_slice(from);
 }
 
 impl<const N: usize> LaneMask<N> {
