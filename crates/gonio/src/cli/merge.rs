@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
         wait_for(&arguments.parts)?;
     }
     let parts = Parts::of(&arguments.parts)?;
-    arguments.picture.check_shown(&parts.kept())?;
+    arguments.picture.check(parts.kept().reweighted)?;
     if !arguments.output.iter().all(|path| is_part(path)) {
         parts.require_whole()?;
     }

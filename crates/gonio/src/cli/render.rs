@@ -1,6 +1,7 @@
 //! `gonio render`.
 
 mod checkpoint;
+mod denoise;
 mod live;
 pub(super) mod product;
 mod range;
@@ -206,9 +207,7 @@ enum SamplerName {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     progress::listen();
-    if !arguments.reweight_fireflies {
-        arguments.picture.check_shown(&Kept::NOTHING)?;
-    }
+    arguments.picture.check(arguments.reweight_fireflies)?;
     let chosen = range::of(arguments, |name| std::env::var(name).ok())?;
     let outputs = outputs(arguments, &chosen)?;
     let range = chosen.samples.clone();

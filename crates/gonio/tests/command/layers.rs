@@ -376,3 +376,41 @@ fn faulty_samples_have_names_after_merging() {
         assert!(words.contains("material 'grey'"), "{words}");
     }
 }
+
+/// Without the library `--denoise` says how to get it, before any time is spent; with it there is a layer, and a PNG that shows it.
+#[test]
+fn a_picture_without_noise_needs_the_library() {
+    let place = Place::new();
+    let scene = place.write("room.toml", ROOM);
+    let usual = ["render", &scene, "--size", "32x24", "--spp", "4"];
+    let with = |more: &[&'static str]| [&usual[..], more].concat();
+    place.bad(
+        &with(&["--show", "denoised"]),
+        2,
+        &["--show denoised", "--denoise"],
+    );
+    if !cfg!(feature = "denoise") {
+        place.bad(
+            &with(&["--denoise"]),
+            2,
+            &["built without Open Image Denoise", "--features denoise"],
+        );
+        return;
+    }
+    place.good(&with(&["-o", "plain.exr", "-o", "plain.png"]));
+    place.good(&with(&[
+        "--denoise",
+        "-o",
+        "a.exr",
+        "-o",
+        "a.png",
+        "--show",
+        "denoised",
+    ]));
+    let layers = |name: &str| Layers::read_exr(&place.path().join(name)).unwrap();
+    let (plain, found) = (layers("plain.exr"), layers("a.exr"));
+    assert_eq!(found.rgb(""), plain.rgb(""));
+    assert!(found.rgb("denoised").is_some() && found.rgb("denoised") != found.rgb(""));
+    assert!(found.metadata("gonio.denoised").is_some());
+    assert_ne!(place.read("a.png"), place.read("plain.png"));
+}

@@ -1,13 +1,14 @@
 //! What a rendering leaves: pictures with how they came to be, and parts.
 
+use super::denoise;
 use crate::cli::destination;
 use crate::cli::failure::Failure;
 use crate::cli::parse;
 use crate::cli::summary::rejected_in_words;
-use gonio_image::Image;
 use gonio_image::tonemap::ToneMap;
+use gonio_image::{Channel, ChannelData, Image, Layers};
+use gonio_render::Film;
 use gonio_render::part::{self, Exposure, Label};
-use gonio_render::{Film, Kept};
 use std::path::{Path, PathBuf};
 
 /// How pictures are written.
@@ -15,7 +16,12 @@ use std::path::{Path, PathBuf};
 pub(in crate::cli) struct PictureArguments {
     #[command(flatten)]
     pub tone: ToneArguments,
-    /// What PNG and HDR files and previews show: the mean of all samples (mean), or the picture of --reweight-fireflies (reweighted)
+    /// A second picture without noise, the layer 'denoised' of EXR files, by Open Image Denoise, guided by albedo and normal: its details are guesses. For
+    /// programs that are built with the feature 'denoise'
+    #[arg(long)]
+    pub denoise: bool,
+    /// What PNG and HDR files and previews show: the mean of all samples (mean), or the picture of --reweight-fireflies (reweighted) or of --denoise
+    /// (denoised; previews show the mean)
     #[arg(long, value_enum, value_name = "PICTURE", default_value_t = Shown::Mean)]
     pub show: Shown,
     /// Write the time spent into EXR files: two pictures of the same samples are then no longer the same file
@@ -28,12 +34,23 @@ pub(in crate::cli) struct PictureArguments {
 pub(in crate::cli) enum Shown {
     Mean,
     Reweighted,
+    Denoised,
 }
 
 impl PictureArguments {
-    /// Fails unless the picture that shall be shown is among the layers that are kept.
-    pub fn check_shown(&self, kept: &Kept) -> Result<(), Failure> {
-        if self.show == Shown::Reweighted && !kept.reweighted {
+    /// Fails unless the picture that shall be shown will be there.
+    ///
+    /// - `reweighted`: whether samples are told apart by their brightness
+    pub fn check(&self, reweighted: bool) -> Result<(), Failure> {
+        if self.denoise {
+            denoise::check()?;
+        }
+        if self.show == Shown::Denoised && !self.denoise {
+            return Err(
+                Failure::usage("--show denoised: nothing is denoised").with_help("add --denoise")
+            );
+        }
+        if self.show == Shown::Reweighted && !reweighted {
             return Err(Failure::usage(
                 "--show reweighted: the samples are not told apart by their brightness",
             )
@@ -42,10 +59,10 @@ impl PictureArguments {
         Ok(())
     }
 
-    /// The picture to show.
+    /// The picture to show while it is taken.
     pub fn shown(&self, film: &Film) -> Image {
         let reweighted = match self.show {
-            Shown::Mean => None,
+            Shown::Mean | Shown::Denoised => None,
             Shown::Reweighted => film.reweighted(),
         };
         reweighted.unwrap_or_else(|| film.image())
@@ -98,8 +115,15 @@ pub(in crate::cli) fn write_all<'a>(
 ) -> (Vec<&'a PathBuf>, Option<Failure>) {
     let mut written = Vec::new();
     let mut failure = None;
+    let mut denoised = None;
+    if how.denoise {
+        match denoise::denoised(&exposure.film) {
+            Ok(image) => denoised = Some(image),
+            Err(e) => failure = Some(e),
+        }
+    }
     for path in paths {
-        match write(path, label, exposure, how) {
+        match write(path, label, exposure, how, denoised.as_ref()) {
             Ok(()) => written.push(path),
             Err(e) => failure = failure.or(Some(e)),
         }
@@ -112,16 +136,39 @@ fn write(
     label: &Label,
     exposure: &Exposure,
     how: &PictureArguments,
+    denoised: Option<&Image>,
 ) -> Result<(), Failure> {
     let film = &exposure.film;
     match destination::extension(path).as_str() {
         "gonio" => part::write(path, label, exposure)?,
-        "exr" => film
-            .layers(&label.names, metadata(label, exposure, how.write_time))
-            .write_exr(path)?,
-        _ => how.tone.write(&how.shown(film), path)?,
+        "exr" => {
+            let metadata = metadata(label, exposure, how.write_time);
+            let mut layers = film.layers(&label.names, metadata);
+            if let Some(image) = denoised {
+                add(image, &mut layers);
+            }
+            layers.write_exr(path)?;
+        }
+        _ => match denoised.filter(|_| how.show == Shown::Denoised) {
+            Some(image) => how.tone.write(image, path)?,
+            None => how.tone.write(&how.shown(film), path)?,
+        },
     }
     Ok(())
+}
+
+/// Adds the denoised picture.
+fn add(image: &Image, layers: &mut Layers) {
+    for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
+        layers.channels.push(Channel {
+            name: format!("denoised.{name}"),
+            samples: ChannelData::Float(image.pixels.iter().map(|p| p[c]).collect()),
+        });
+    }
+    layers.set_metadata(
+        "gonio.denoised",
+        "denoised.R, G and B: by Open Image Denoise, guided by albedo and normal; biased, and not the same bits on every machine; R, G and B are the mean of all samples",
+    );
 }
 
 /// How the picture came to be, as text attributes of the file: functions of its samples alone, so that the same samples make the same file,
