@@ -18,6 +18,9 @@ const HERE: super::kernel::Portable = super::kernel::Portable;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 const HERE: super::simd128::Simd128 = super::simd128::Simd128;
 
+/// Whether coherent rays go through meshes as beams: not in WebAssembly, where a page loads the code.
+const BEAMS: bool = !cfg!(target_family = "wasm");
+
 /// Which kernel this processor gets.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Choice {
@@ -120,7 +123,7 @@ impl Geometry {
         }
         for &(instance, tree) in &self.simple.meshes {
             let tree = &self.trees[tree as usize];
-            if coherent {
+            if coherent && BEAMS {
                 let placed = &self.placed[instance as usize];
                 let asked = Asked {
                     tree,

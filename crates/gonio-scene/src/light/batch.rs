@@ -465,21 +465,17 @@ impl<S: OnLanes> Kernel for SampleSurfaces<'_, S> {
 
     #[inline(always)]
     fn run<const L: usize>(mut self) {
+        let mut light = [self.one.unwrap_or(self.chosen[0].light); L];
+        let mut sources = Sources::<S, L>::of(self.lights, &light);
         let mut done = 0;
-        if let Some(light) = self.one {
-            let sources = Sources::<S, L>::of(self.lights, &[light; L]);
-            while done < self.chosen.len() {
-                self.some(done, &sources);
-                done += L;
-            }
-            return;
-        }
         while done < self.chosen.len() {
-            let mut light = [self.chosen[done].light; L];
-            for (light, c) in light.iter_mut().zip(&self.chosen[done..]) {
-                *light = c.light;
+            if self.one.is_none() {
+                for (light, c) in light.iter_mut().zip(&self.chosen[done..]) {
+                    *light = c.light;
+                }
+                sources = Sources::of(self.lights, &light);
             }
-            self.some(done, &Sources::<S, L>::of(self.lights, &light));
+            self.some(done, &sources);
             done += L;
         }
     }
