@@ -10,7 +10,7 @@ mod row;
 mod triple;
 
 pub use kept::Kept;
-pub use layers::Names;
+pub use layers::{Names, picture};
 pub use pixel::{FilmSample, FirstSurface, PixelSums};
 pub(crate) use row::{FilmRow, Place};
 

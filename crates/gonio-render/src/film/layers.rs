@@ -118,7 +118,7 @@ impl Film {
     }
 }
 
-/// The channels of a layer that is a picture.
+/// The channels `R`, `G` and `B` of a layer that is a picture.
 pub fn picture<'a>(layer: &'a str, image: &'a Image) -> impl Iterator<Item = Channel> + 'a {
     (["R", "G", "B"].into_iter().enumerate()).map(move |(c, name)| Channel {
         name: format!("{layer}.{name}"),

@@ -8,7 +8,7 @@
 // Loops over an index are what vectorises.
 #![allow(clippy::needless_range_loop)]
 
-use super::kernel::Kernel;
+use super::kernel::{Kernel, max, min};
 use super::mesh_tree::{MeshTree, Triangles};
 use super::nearest::Nearest;
 use super::placed::Placed;
@@ -24,16 +24,6 @@ pub(super) const RAYS: usize = 64;
 const ROW: usize = 8;
 /// So many rays or fewer go on alone.
 const FEW: u32 = 4;
-
-#[inline(always)]
-fn min(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn max(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
 
 /// What the rays of a beam are asked about.
 pub(super) struct Asked<'a> {

@@ -197,10 +197,11 @@ impl Lights {
                         self.sample_environment(guide, &chosen, from, u, samples);
                     }
                     Way::Sphere(one) => {
-                        self.sample_surfaces::<OfSphere>(guide, (&chosen, one), from, u, samples);
+                        let which = (&chosen[..], one.is_some());
+                        self.sample_surfaces::<OfSphere>(guide, which, from, u, samples);
                     }
                     Way::Rectangle(one) => {
-                        let which = (&chosen[..], one);
+                        let which = (&chosen[..], one.is_some());
                         self.sample_surfaces::<OfRectangle>(guide, which, from, u, samples);
                     }
                 }
@@ -287,11 +288,11 @@ impl Lights {
 
     /// The points whose light is a surface that lanes know.
     ///
-    /// - `one`: the light, if it is the same for all
+    /// - `alike`: whether the light is the same for all
     fn sample_surfaces<S: OnLanes>(
         &self,
         guide: Guide,
-        (chosen, one): (&[Chosen], Option<u32>),
+        (chosen, alike): (&[Chosen], bool),
         from: &Surfaces,
         u: [&[f32]; 2],
         samples: &mut LightSamples,
@@ -299,7 +300,7 @@ impl Lights {
         dispatch(SampleSurfaces::<S> {
             lights: self,
             chosen,
-            one,
+            alike,
             from,
             u,
             samples,
@@ -419,7 +420,8 @@ struct SampleSurfaces<'a, S> {
     lights: &'a Lights,
     /// In the order of the points.
     chosen: &'a [Chosen],
-    one: Option<u32>,
+    /// Whether the light is the same for all.
+    alike: bool,
     from: &'a Surfaces,
     u: [&'a [f32]; 2],
     samples: &'a mut LightSamples,
@@ -465,23 +467,32 @@ impl<S: OnLanes> Kernel for SampleSurfaces<'_, S> {
 
     #[inline(always)]
     fn run<const L: usize>(mut self) {
-        let mut light = [self.one.unwrap_or(self.chosen[0].light); L];
-        let mut sources = Sources::<S, L>::of(self.lights, &light);
         let mut done = 0;
-        while done < self.chosen.len() {
-            if self.one.is_none() {
-                for (light, c) in light.iter_mut().zip(&self.chosen[done..]) {
-                    *light = c.light;
-                }
-                sources = Sources::of(self.lights, &light);
-            }
+        let mut sources = self.sources::<L>(done);
+        loop {
             self.some(done, &sources);
             done += L;
+            if done >= self.chosen.len() {
+                return;
+            }
+            if !self.alike {
+                sources = self.sources(done);
+            }
         }
     }
 }
 
 impl<S: OnLanes> SampleSurfaces<'_, S> {
+    /// The lights of the points from `done` on; past the end the first of them again.
+    #[inline(always)]
+    fn sources<const L: usize>(&self, done: usize) -> Sources<S, L> {
+        let mut light = [self.chosen[done].light; L];
+        for (light, c) in light.iter_mut().zip(&self.chosen[done..]) {
+            *light = c.light;
+        }
+        Sources::of(self.lights, &light)
+    }
+
     /// Directions from up to `L` points, those from `done` on. Where nothing was found the density is NaN if another formula is to be tried,
     /// else 0.
     #[inline(always)]

@@ -157,11 +157,7 @@ impl Choice {
                 infinite,
                 ..
             } => {
-                let (index, probability, rest) = if infinite.is_empty() {
-                    (0, 1.0, u)
-                } else {
-                    branch.sample(u)
-                };
+                let (index, probability, rest) = sample_branch(branch, infinite, u);
                 if index > 0 {
                     let light = infinite[index - 1] as usize;
                     return Some(Chosen::whole((light, probability, rest)));
@@ -232,6 +228,17 @@ impl Choice {
     }
 }
 
+/// The tree, 0, or the place of one of the others, from 1 on; its probability, and what is left of `u`.
+#[inline(always)]
+fn sample_branch(branch: &Discrete, infinite: &[u32], u: f32) -> (usize, f32, f32) {
+    if infinite.is_empty() {
+        // What `branch` says as well, without a search.
+        (0, 1.0, u)
+    } else {
+        branch.sample(u)
+    }
+}
+
 /// A number of 24 bits with 29 more, which are a hash of it and the point: a light of many is chosen with a smaller probability than 2⁻²⁴, and
 /// what is left of the number within its share would have no digits.
 #[inline(always)]
@@ -295,11 +302,7 @@ impl Kernel for ChooseMany<'_> {
             } => {
                 self.walks.clear();
                 for (i, (chosen, &u)) in self.chosen.iter_mut().zip(self.u).enumerate() {
-                    let (index, probability, rest) = if infinite.is_empty() {
-                        (0, 1.0, u)
-                    } else {
-                        branch.sample(u)
-                    };
+                    let (index, probability, rest) = sample_branch(branch, infinite, u);
                     if index > 0 {
                         let light = infinite[index - 1] as usize;
                         *chosen = Chosen::whole((light, probability, rest));
@@ -312,11 +315,7 @@ impl Kernel for ChooseMany<'_> {
                     normals: self.normals,
                 };
                 let mut choices = OfTree {
-                    probability: if infinite.is_empty() {
-                        1.0
-                    } else {
-                        branch.probability(0)
-                    },
+                    probability: branch.probability(0),
                     chosen: self.chosen,
                 };
                 tree.choose_many::<L>(points, self.walks, &mut choices);

@@ -6,8 +6,9 @@ use crate::cli::failure::Failure;
 use crate::cli::parse;
 use crate::cli::summary::rejected_in_words;
 use gonio_image::tonemap::ToneMap;
-use gonio_image::{Channel, ChannelData, Image, Layers};
+use gonio_image::{Image, Layers};
 use gonio_render::Film;
+use gonio_render::film::picture;
 use gonio_render::part::{self, Exposure, Label};
 use std::path::{Path, PathBuf};
 
@@ -159,12 +160,7 @@ fn write(
 
 /// Adds the denoised picture.
 fn add(image: &Image, layers: &mut Layers) {
-    for (c, name) in ["R", "G", "B"].into_iter().enumerate() {
-        layers.channels.push(Channel {
-            name: format!("denoised.{name}"),
-            samples: ChannelData::Float(image.pixels.iter().map(|p| p[c]).collect()),
-        });
-    }
+    layers.channels.extend(picture("denoised", image));
     layers.set_metadata(
         "gonio.denoised",
         "denoised.R, G and B: by Open Image Denoise, guided by albedo and normal; biased, and not the same bits on every machine; R, G and B are the mean of all samples",
