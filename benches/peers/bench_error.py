@@ -31,7 +31,7 @@ RESOLUTION = 256
 # Sampler, the reflections before roulette, and how many times as many samples: errors of even points fall faster than their number grows.
 THEIRS = [*itertools.product(["independent", "stratified", "multijitter", "ldsampler"], [5, 1000], [1]), ("multijitter", 5, 4), ("ldsampler", 5, 4)]
 # Options, and how many times as many samples.
-OURS = [("", 1), ("--adaptive", 1), ("--splitting 4", 1), ("--splitting 4 --adaptive", 2), ("--light-samples 4 --splitting 2 --adaptive", 2)]
+OURS = [("", 1), ("--roulette efficiency", 1), ("--adaptive", 1), ("--splitting 4", 1), ("--splitting 4 --adaptive", 2), ("--light-samples 4 --splitting 2 --adaptive", 2)]
 # Added where there is a sky.
 SKY = "--env-sampling compensated"
 
