@@ -193,14 +193,14 @@ impl<'a> Row<'a> {
             let (light, rays) = (&mut self.light, [&self.origins, &self.directions]);
             let importance = &self.importance;
             (self.waves).radiance(rays, &self.streams, importance, light, &mut counts);
-            for (i, &(x, index)) in self.places.iter().enumerate() {
-                let place = Place {
-                    pixel: [x, y],
-                    index,
-                    off_centre: self.off_centre[i],
-                };
-                row.add(&light.samples[i], light.shares(i), &place, &mut rejected);
-            }
+            let places = self.places.iter().zip(&self.off_centre);
+            let places = places.map(|(&(x, index), &off_centre)| Place {
+                pixel: [x, y],
+                index,
+                off_centre,
+            });
+            let (samples, shares) = light.samples_and_shares();
+            row.add_many(samples, shares, places, &mut rejected);
         }
         (counts, rejected)
     }
@@ -458,6 +458,7 @@ mod tests {
                     max_bounces: 4,
                     roulette_after: 0,
                     light_samples: 4,
+                    light_candidates: 3,
                     splitting: 3,
                     ..Path::default()
                 },

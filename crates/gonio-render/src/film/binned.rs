@@ -25,13 +25,11 @@ pub(crate) fn add<const K: usize>(bins: &mut [u64; K], top: &mut u8, value: f64)
     debug_assert!(value >= 0.0 && value.is_finite());
     let bits = value.to_bits();
     let exponent = (bits >> 52) as u32;
-    // Zero; denormal numbers are no `f32`s and no squares of them.
     if exponent == 0 {
         return;
     }
     let mantissa = (bits & ((1 << 52) - 1)) | 1 << 52;
-    // The place of the leading bit, which is bit 52 of the mantissa: at most (2046 + 52) / 32 = 65.
-    raise(bins, top, ((exponent + 52) / 32) as u8);
+    raise(bins, top, place(value));
     // By how much the number's unit is above that of the lowest digit that is kept: 12 at most with K = 2 and 43 with K = 3, as the number
     // has no digit above the top.
     let above = exponent as i32 - 32 * (i32::from(*top) - (K as i32 - 1));
@@ -42,6 +40,51 @@ pub(crate) fn add<const K: usize>(bins: &mut [u64; K], top: &mut u8, value: f64)
     };
     for (i, bin) in bins.iter_mut().rev().enumerate() {
         *bin += u64::from((digits >> (32 * i)) as u32);
+    }
+}
+
+/// The place of a number's highest digit: at most (2046 + 52) / 32 = 65. 0 for 0, and for denormal numbers, which are no `f32`s and no squares
+/// of them.
+#[inline(always)]
+pub(crate) fn place(value: f64) -> u8 {
+    match value.to_bits() >> 52 {
+        0 => 0,
+        exponent => ((exponent + 52) / 32) as u8,
+    }
+}
+
+/// Whether any of the numbers has a digit above its sum's highest.
+#[inline(always)]
+pub(crate) fn are_above<const N: usize>(tops: &[u8; N], values: &[f64; N]) -> bool {
+    let mut above = 0;
+    for i in 0..N {
+        above |= u8::from(place(values[i]) > tops[i]);
+    }
+    above != 0
+}
+
+/// [`add`] to many sums of three digits side by side, without a branch: `digits[k][i]` is digit k of sum i.
+///
+/// No number has a digit above its sum's highest ([`are_above`]).
+#[inline(always)]
+pub(crate) fn add_all<const N: usize>(
+    digits: &mut [[u64; N]; 3],
+    tops: &[u8; N],
+    values: &[f64; N],
+) {
+    for i in 0..N {
+        let bits = values[i].to_bits();
+        let exponent = bits >> 52;
+        let mantissa = (bits & ((1 << 52) - 1)) | 1 << 52;
+        let mantissa = if exponent == 0 { 0 } else { mantissa };
+        for k in 0..3 {
+            // By how much the number's unit is above that of digit k; as an unsigned number it is large if it is below.
+            let above = (exponent + 32 * k as u64).wrapping_sub(32 * u64::from(tops[i]));
+            let below = above.wrapping_neg();
+            let raised = if above < 64 { mantissa << above } else { 0 };
+            let lowered = if below < 64 { mantissa >> below } else { 0 };
+            digits[k][i] += (raised | lowered) & u64::from(u32::MAX);
+        }
     }
 }
 
@@ -86,7 +129,7 @@ pub(crate) fn is_sound<const K: usize>(bins: &[u64; K], top: u8, count: u32) -> 
 
 /// Makes `place` the highest, if it is higher than `top`.
 #[inline]
-fn raise<const K: usize>(bins: &mut [u64; K], top: &mut u8, place: u8) {
+pub(crate) fn raise<const K: usize>(bins: &mut [u64; K], top: &mut u8, place: u8) {
     if place <= *top {
         return;
     }
@@ -134,6 +177,31 @@ mod tests {
                 prop_assert_eq!((bins, joint), (whole, top));
             }
             prop_assert!(is_sound(&whole, top, values.len() as u32));
+        }
+
+        #[test]
+        fn sums_side_by_side_are_those_one_by_one(
+            values in prop::collection::vec([any_f32(), any_f32(), Just(0.0), any_f32()], 1..20),
+        ) {
+            let mut digits = [[0; 4]; 3];
+            let mut tops = [0; 4];
+            for values in &values {
+                if are_above(&tops, values) {
+                    for i in 0..4 {
+                        let mut one = [0, 1, 2].map(|k: usize| digits[k][i]);
+                        raise(&mut one, &mut tops[i], place(values[i]));
+                        (0..3).for_each(|k| digits[k][i] = one[k]);
+                    }
+                }
+                add_all(&mut digits, &tops, values);
+            }
+            for i in 0..4 {
+                let column: Vec<f64> = values.iter().map(|v| v[i]).collect();
+                let found = [0, 1, 2].map(|k: usize| digits[k][i]);
+                prop_assert_eq!((found, tops[i]), sum::<3>(&column));
+                // Two digits are the first two of three.
+                prop_assert_eq!((found[..2].to_vec(), tops[i]), { let (two, top) = sum::<2>(&column); (two.to_vec(), top) });
+            }
         }
 
         #[test]

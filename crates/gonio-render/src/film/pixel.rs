@@ -1,28 +1,36 @@
 //! [`PixelSums`]: the sums over the samples of one pixel.
 
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
 use super::binned;
 
 /// The sums over the samples of one pixel. They are functions of the set of samples: order and grouping leave no trace, so
 /// that parts of a picture add up to the bits of the whole.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PixelSums {
-    /// Σ L.
-    pub(super) radiance: [[u64; 2]; 3],
-    /// Σ L².
-    pub(super) radiance_squared: [[u64; 3]; 3],
-    /// Σ of the distance to the first surface, over the samples that hit one.
-    pub(super) depth: [u64; 2],
-    /// Σ of the first surface's albedo, in units of [`FIXED`].
-    pub(super) albedo: [i64; 3],
-    /// Σ of the first surface's shading normal, world space, in units of [`FIXED`].
-    pub(super) normal: [i64; 3],
+    /// The first and second digits of Σ L² ([`SQUARES`] and the two after it), of Σ L ([`RADIANCE`]) and of Σ of the distance to the first
+    /// surface ([`DEPTH`]), over the samples that hit one; the last place is empty.
+    pub(super) digits: [[u64; SUMS]; 2],
+    /// The third digits of Σ L².
+    pub(super) third: [u64; 3],
+    /// Σ of the first surface's albedo, and of its shading normal in world space, in units of [`FIXED`].
+    pub(super) surface: [i64; 6],
     /// Samples that hit a surface.
     pub(super) hits: u32,
     /// Samples taken, rejected ones included.
     pub(super) samples: u32,
-    /// The places of the highest digits: of radiance, of its square, of depth.
-    pub(super) tops: [u8; 7],
+    /// The places of the highest digits.
+    pub(super) tops: [u8; SUMS],
 }
+
+/// Sums that are binned, side by side: as many as fit vector registers.
+pub(super) const SUMS: usize = 8;
+/// The first of three.
+pub(super) const SQUARES: usize = 0;
+/// The first of three.
+pub(super) const RADIANCE: usize = 3;
+pub(super) const DEPTH: usize = 6;
 
 /// What the auxiliary layers keep of the first surface that a camera ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,11 +61,38 @@ const FIXED: f64 = (1 << 24) as f64;
 /// Units that one sample may add: 2³² samples fit an `i64`. It is an albedo of 128.
 const MOST_FIXED: f64 = (1_i64 << 31) as f64;
 
+/// The whole number of units nearest to x, away from 0 of two as near; 0 for NaN. Without conversions to integers or calls, so that it vectorises.
 #[inline(always)]
-fn fixed(x: f32) -> i64 {
-    // NaN becomes 0. The nearest integer: the sum is exact, as a number of 24 bits that is no integer is below 2²⁴; `f64::round` is a call.
-    let x = (f64::from(x) * FIXED).clamp(-MOST_FIXED, MOST_FIXED);
-    (x + 0.5_f64.copysign(x)) as i64
+fn fixed(x: f32) -> f64 {
+    // Of a number of this size the last bit is 1.
+    const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
+    let x = f64::from(x) * FIXED;
+    let x = if x < MOST_FIXED {
+        x
+    } else {
+        MOST_FIXED * f64::from(x >= MOST_FIXED)
+    };
+    let x = if x > -MOST_FIXED { x } else { -MOST_FIXED };
+    // To the even one of two as near, of which the other may be further from 0.
+    let near = (x + WHOLE) - WHOLE;
+    let left = x - near;
+    let further = if x > 0.0 { 1.0 } else { -1.0 };
+    near + if left == 0.5 * further { further } else { 0.0 }
+}
+
+/// What a sample adds to the sums that are binned.
+#[inline(always)]
+fn binned_of(sample: &FilmSample) -> [f64; SUMS] {
+    let [r, g, b] = sample.radiance;
+    let depth = sample.first.map_or(0.0, |first| first.depth);
+    let known = depth > 0.0 && depth < f32::INFINITY;
+    let left = [r, g, b, r, g, b, if known { depth } else { 0.0 }, 0.0];
+    let right = [r, g, b, 1.0, 1.0, 1.0, 1.0, 0.0];
+    let mut values = [0.0; SUMS];
+    for i in 0..SUMS {
+        values[i] = f64::from(left[i]) * f64::from(right[i]);
+    }
+    values
 }
 
 impl PixelSums {
@@ -69,7 +104,7 @@ impl PixelSums {
     /// Mean radiance; 0 without samples.
     pub fn mean(&self) -> [f64; 3] {
         let n = f64::from(self.samples.max(1));
-        std::array::from_fn(|c| binned::value(&self.radiance[c], self.tops[c]) / n)
+        std::array::from_fn(|c| self.sum(RADIANCE + c) / n)
     }
 
     /// Variance of the mean, by the sample variance s² / n; ∞ below two samples.
@@ -80,7 +115,7 @@ impl PixelSums {
         let n = f64::from(self.samples);
         let mean = self.mean();
         std::array::from_fn(|c| {
-            let squares = binned::value(&self.radiance_squared[c], self.tops[3 + c]);
+            let squares = self.sum(SQUARES + c);
             let s2 = (squares / n - mean[c] * mean[c]).max(0.0) * n / (n - 1.0);
             s2 / n
         })
@@ -88,12 +123,14 @@ impl PixelSums {
 
     /// Mean albedo of the first surface, over all samples; 0 without.
     pub fn albedo(&self) -> [f32; 3] {
-        self.mean_of_fixed(self.albedo)
+        let [r, g, b, ..] = self.surface;
+        self.mean_of_fixed([r, g, b])
     }
 
     /// Mean shading normal of the first surface, over all samples, not normalised; 0 without.
     pub fn normal(&self) -> [f32; 3] {
-        self.mean_of_fixed(self.normal)
+        let [.., x, y, z] = self.surface;
+        self.mean_of_fixed([x, y, z])
     }
 
     /// Mean distance to the first surface, over the samples that hit one; ∞ if none did.
@@ -101,7 +138,7 @@ impl PixelSums {
         if self.hits == 0 {
             return f32::INFINITY;
         }
-        (binned::value(&self.depth, self.tops[6]) / f64::from(self.hits)) as f32
+        (self.sum(DEPTH) / f64::from(self.hits)) as f32
     }
 
     fn mean_of_fixed(&self, sums: [i64; 3]) -> [f32; 3] {
@@ -109,38 +146,88 @@ impl PixelSums {
         sums.map(|s| (s as f64 / FIXED / n) as f32)
     }
 
-    /// Adds a sample of finite radiance that is not negative.
-    pub(super) fn add(&mut self, sample: &FilmSample) {
-        self.samples += 1;
-        for c in 0..3 {
-            let l = f64::from(sample.radiance[c]);
-            binned::add(&mut self.radiance[c], &mut self.tops[c], l);
-            binned::add(&mut self.radiance_squared[c], &mut self.tops[3 + c], l * l);
+    /// All digits of sum `i`.
+    pub(super) fn digits_of(&self, i: usize) -> [u64; 3] {
+        let third = self.third.get(i).copied().unwrap_or(0);
+        [self.digits[0][i], self.digits[1][i], third]
+    }
+
+    pub(super) fn set_digits(&mut self, i: usize, [first, second, third]: [u64; 3]) {
+        self.digits[0][i] = first;
+        self.digits[1][i] = second;
+        // Of the others the third digits are given up.
+        if let Some(own) = self.third.get_mut(i) {
+            *own = third;
         }
-        if let Some(first) = &sample.first {
-            self.hits += 1;
-            if first.depth.is_finite() && first.depth > 0.0 {
-                binned::add(&mut self.depth, &mut self.tops[6], f64::from(first.depth));
+    }
+
+    fn sum(&self, i: usize) -> f64 {
+        binned::value(&self.digits_of(i), self.tops[i])
+    }
+
+    /// Adds samples of finite radiance that is not negative.
+    #[inline(always)]
+    pub(super) fn add(&mut self, samples: &[FilmSample]) {
+        let mut largest = [0.0; SUMS];
+        for sample in samples {
+            let values = binned_of(sample);
+            for i in 0..SUMS {
+                largest[i] = if largest[i] < values[i] {
+                    values[i]
+                } else {
+                    largest[i]
+                };
             }
-            for c in 0..3 {
-                self.albedo[c] += fixed(first.albedo[c]);
-                self.normal[c] += fixed(first.normal[c]);
+        }
+        if binned::are_above(&self.tops, &largest) {
+            self.raise(&largest);
+        }
+        let [r, g, b] = self.third;
+        let mut digits = [self.digits[0], self.digits[1], [r, g, b, 0, 0, 0, 0, 0]];
+        // As many samples as fit memory have sums that are exact.
+        let (mut surface, mut hits) = ([0.0; SUMS], 0);
+        for sample in samples {
+            binned::add_all(&mut digits, &self.tops, &binned_of(sample));
+            if let Some(first) = &sample.first {
+                hits += 1;
+                let ([r, g, b], [x, y, z]) = (first.albedo, first.normal);
+                let numbers = [r, g, b, x, y, z, 0.0, 0.0];
+                for i in 0..SUMS {
+                    surface[i] += fixed(numbers[i]);
+                }
             }
+        }
+        self.digits = [digits[0], digits[1]];
+        self.third.copy_from_slice(&digits[2][..3]);
+        for (sum, more) in self.surface.iter_mut().zip(surface) {
+            *sum += more as i64;
+        }
+        self.hits += hits;
+        self.samples += samples.len() as u32;
+    }
+
+    /// Makes room for sums of such numbers.
+    #[cold]
+    #[inline(never)]
+    fn raise(&mut self, largest: &[f64; SUMS]) {
+        for (i, largest) in largest.iter().enumerate() {
+            let mut digits = self.digits_of(i);
+            binned::raise(&mut digits, &mut self.tops[i], binned::place(*largest));
+            self.set_digits(i, digits);
         }
     }
 
     /// Adds the sums of other samples of the same pixel, fewer than 2³² with those that are here.
     pub fn merge(&mut self, other: &Self) {
-        for c in 0..3 {
-            let (own, tops) = (&mut self.radiance[c], &mut self.tops);
-            binned::merge(own, &mut tops[c], (&other.radiance[c], other.tops[c]));
-            let squares = (&other.radiance_squared[c], other.tops[3 + c]);
-            binned::merge(&mut self.radiance_squared[c], &mut tops[3 + c], squares);
-            self.albedo[c] += other.albedo[c];
-            self.normal[c] += other.normal[c];
+        for i in 0..SUMS {
+            let mut digits = self.digits_of(i);
+            let others = (&other.digits_of(i), other.tops[i]);
+            binned::merge(&mut digits, &mut self.tops[i], others);
+            self.set_digits(i, digits);
         }
-        let depth = (&other.depth, other.tops[6]);
-        binned::merge(&mut self.depth, &mut self.tops[6], depth);
+        for (sum, other) in self.surface.iter_mut().zip(other.surface) {
+            *sum += other;
+        }
         self.hits += other.hits;
         self.samples += other.samples;
     }
@@ -149,13 +236,10 @@ impl PixelSums {
     pub(super) fn is_sound(&self, count: u32) -> bool {
         let n = self.samples;
         let most = i64::from(n) << 31;
-        let fixed = self.albedo.iter().chain(&self.normal);
         n <= count
             && self.hits <= n
-            && (0..3).all(|c| binned::is_sound(&self.radiance[c], self.tops[c], n))
-            && (0..3).all(|c| binned::is_sound(&self.radiance_squared[c], self.tops[3 + c], n))
-            && binned::is_sound(&self.depth, self.tops[6], n)
-            && fixed.into_iter().all(|s| (-most..=most).contains(s))
+            && (0..SUMS).all(|i| binned::is_sound(&self.digits_of(i), self.tops[i], n))
+            && self.surface.iter().all(|s| (-most..=most).contains(s))
     }
 }
 
@@ -184,7 +268,7 @@ mod tests {
             ..sample(1.0, 0.0)
         };
         for s in [sample(1.0, 3.0), sample(4.0, 5.0), missed] {
-            sums.add(&s);
+            sums.add(&[s]);
         }
         assert_eq!((sums.mean(), sums.samples()), ([2.0, 4.0, 0.0], 3));
         assert_eq!(sums.depth(), 4.0);
@@ -196,13 +280,38 @@ mod tests {
     }
 
     #[test]
+    fn units_are_rounded_away_from_0() {
+        let unit = 1.0 / FIXED as f32;
+        for (x, units) in [
+            (0.0, 0.0),
+            (0.5 * unit, 1.0),
+            (1.5 * unit, 2.0),
+            (2.5 * unit, 3.0),
+            (2.499 * unit, 2.0),
+            (-0.5 * unit, -1.0),
+            (-1.5 * unit, -2.0),
+            (-1.501 * unit, -2.0),
+            (0.7, 11_744_051.0),
+            (-127.0, -127.0 * FIXED),
+            (1e9, MOST_FIXED),
+            (f32::INFINITY, MOST_FIXED),
+            (f32::NEG_INFINITY, -MOST_FIXED),
+            (f32::NAN, 0.0),
+        ] {
+            assert_eq!(fixed(x), units, "{x}");
+        }
+        let same = |x: f32| fixed(x) == (f64::from(x) * FIXED).round();
+        assert!((0..10_000).all(|k| same(1.3_f32.powi(k % 80 - 77) * (k as f32 - 5000.0) * 1e-4)));
+    }
+
+    #[test]
     fn parts_of_samples_add_up_to_the_bits_of_the_whole() {
         let samples: Vec<FilmSample> = (1..50_u16)
             .map(|k| sample(1.0 / f32::from(k * k), f32::from(k) * 0.1))
             .collect();
         let of = |samples: &[FilmSample]| {
             let mut sums = PixelSums::default();
-            samples.iter().for_each(|s| sums.add(s));
+            sums.add(samples);
             sums
         };
         let whole = of(&samples);
@@ -215,9 +324,9 @@ mod tests {
         assert!(whole.is_sound(49) && !whole.is_sound(48));
     }
 
-    /// A pixel takes 200 bytes: the sums of radiance and its square 120, depth 16, albedo and normal 48, counts and places 16.
+    /// A pixel takes 216 bytes: the sums of radiance, its square and depth 152, albedo and normal 48, counts and places 16.
     #[test]
     fn a_pixel_is_small() {
-        assert_eq!(size_of::<PixelSums>(), 200);
+        assert_eq!(size_of::<PixelSums>(), 216);
     }
 }

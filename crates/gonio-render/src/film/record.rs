@@ -3,7 +3,7 @@
 use super::Film;
 use super::kept::Kept;
 use super::levels::{self, Levels};
-use super::pixel::PixelSums;
+use super::pixel::{DEPTH, PixelSums, RADIANCE, SQUARES};
 use super::triple::{Nearest, Triple};
 
 /// Numbers of a pixel in every film, in this order: the places of the highest digits (7), the digits of radiance (2 for each of R, G and
@@ -166,34 +166,39 @@ impl Film {
     }
 }
 
+/// Of the sums that are binned, those of a file in its order, with their number of digits.
+const OF_FILE: [(usize, usize); 7] = [
+    (RADIANCE, 2),
+    (RADIANCE + 1, 2),
+    (RADIANCE + 2, 2),
+    (SQUARES, 3),
+    (SQUARES + 1, 3),
+    (SQUARES + 2, 3),
+    (DEPTH, 2),
+];
+
 /// The numbers that every film has.
 fn numbers(pixel: &PixelSums) -> impl Iterator<Item = u64> + '_ {
-    (pixel.tops.iter().map(|t| u64::from(*t)))
-        .chain(pixel.radiance.as_flattened().iter().copied())
-        .chain(pixel.radiance_squared.as_flattened().iter().copied())
-        .chain(pixel.depth)
-        .chain(
-            pixel
-                .albedo
-                .iter()
-                .chain(&pixel.normal)
-                .map(|s| unsigned(*s)),
-        )
+    let tops = OF_FILE.iter().map(|&(sum, _)| u64::from(pixel.tops[sum]));
+    let digits_of = |&(sum, count): &(usize, usize)| pixel.digits_of(sum).into_iter().take(count);
+    tops.chain(OF_FILE.iter().flat_map(digits_of))
+        .chain(pixel.surface.map(unsigned))
         .chain([pixel.hits, pixel.samples].map(u64::from))
 }
 
 fn common(rest: &mut impl Iterator<Item = u64>) -> Option<PixelSums> {
     let mut pixel = PixelSums::default();
-    for top in &mut pixel.tops {
-        *top = rest.next()?.try_into().ok()?;
+    for (sum, _) in OF_FILE {
+        pixel.tops[sum] = rest.next()?.try_into().ok()?;
     }
-    let digits = (pixel.radiance.as_flattened_mut().iter_mut())
-        .chain(pixel.radiance_squared.as_flattened_mut())
-        .chain(&mut pixel.depth);
-    for digit in digits {
-        *digit = rest.next()?;
+    for (sum, count) in OF_FILE {
+        let mut digits = [0; 3];
+        for digit in &mut digits[..count] {
+            *digit = rest.next()?;
+        }
+        pixel.set_digits(sum, digits);
     }
-    for sum in pixel.albedo.iter_mut().chain(&mut pixel.normal) {
+    for sum in &mut pixel.surface {
         *sum = signed(rest.next()?);
     }
     pixel.hits = rest.next()?.try_into().ok()?;

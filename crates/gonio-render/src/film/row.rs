@@ -4,6 +4,7 @@ use super::kept::Kept;
 use super::levels::Levels;
 use super::triple::{Nearest, Triple};
 use super::{FilmSample, PixelSums, Rejected, RejectedSample};
+use gonio_num::dispatch::{Kernel, dispatch};
 
 /// A row of a film, which one thread may write.
 pub(crate) struct FilmRow<'a> {
@@ -52,6 +53,46 @@ impl FilmRow<'_> {
         rejected: &mut Rejected,
     ) {
         let mut sample = *sample;
+        self.add_to_layers(&mut sample, shares, place, rejected);
+        self.pixels[place.pixel[0] as usize].add(&[sample]);
+    }
+
+    /// [`FilmRow::add`] of many samples, those of a pixel one after the other; the radiance of one that is rejected is set to 0.
+    ///
+    /// - `shares`: of each sample
+    /// - `places`: one a sample
+    pub fn add_many<'s>(
+        &mut self,
+        samples: &mut [FilmSample],
+        shares: impl Fn(usize) -> &'s [[f32; 3]],
+        places: impl Iterator<Item = Place>,
+        rejected: &mut Rejected,
+    ) {
+        let mut runs = Vec::with_capacity(samples.len());
+        for (i, (sample, place)) in samples.iter_mut().zip(places).enumerate() {
+            self.add_to_layers(sample, shares(i), &place, rejected);
+            let [x, _] = place.pixel;
+            match runs.last_mut() {
+                Some((last, count)) if *last == x => *count += 1,
+                _ => runs.push((x, 1)),
+            }
+        }
+        dispatch(AddRuns {
+            pixels: self.pixels,
+            runs: &runs,
+            samples,
+        });
+    }
+
+    /// Adds a sample to the layers that are kept, and takes its radiance if it is none.
+    #[inline]
+    fn add_to_layers(
+        &mut self,
+        sample: &mut FilmSample,
+        shares: &[[f32; 3]],
+        place: &Place,
+        rejected: &mut Rejected,
+    ) {
         let is_sound = is_light(sample.radiance);
         if !is_sound {
             rejected.merge(Rejected {
@@ -66,11 +107,10 @@ impl FilmRow<'_> {
             });
             sample.radiance = [0.0; 3];
         }
-        let x = place.pixel[0] as usize;
-        self.pixels[x].add(&sample);
         if self.kept == Kept::NOTHING {
             return;
         }
+        let x = place.pixel[0] as usize;
         if let Some(levels) = self.levels.get_mut(x) {
             levels.add(sample.radiance);
         }
@@ -96,6 +136,27 @@ impl FilmRow<'_> {
         if let Some(nearest) = self.nearest.get_mut(x) {
             let material = sample.first.map(|first| first.material);
             nearest.merge(Nearest::new(place.off_centre, material));
+        }
+    }
+}
+
+/// Samples of pixels, run after run.
+struct AddRuns<'a> {
+    pixels: &'a mut [PixelSums],
+    /// Pixel and number of samples.
+    runs: &'a [(u32, usize)],
+    samples: &'a [FilmSample],
+}
+
+impl Kernel for AddRuns<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const L: usize>(self) {
+        let mut rest = self.samples;
+        for &(x, count) in self.runs {
+            let (run, others) = rest.split_at(count);
+            self.pixels[x as usize].add(run);
+            rest = others;
         }
     }
 }

@@ -65,11 +65,13 @@ impl<'a> Gathered<'a> {
         }
     }
 
-    /// The shares of sample `i`.
-    pub fn shares(&self, i: usize) -> &[[f32; 3]] {
-        let each = self.split.count();
-        let first = i * self.paths * each;
-        &self.shares[first..first + each]
+    /// All samples, and the shares of each.
+    pub fn samples_and_shares<'s>(
+        &'s mut self,
+    ) -> (&'s mut [FilmSample], impl Fn(usize) -> &'s [[f32; 3]]) {
+        let (each, paths, shares) = (self.split.count(), self.paths, &self.shares);
+        let of = move |i| &shares[i * paths * each..][..each];
+        (&mut self.samples, of)
     }
 
     /// Adds light to the path `id`, as [`Shares::add`] does to its shares.
