@@ -272,11 +272,13 @@ impl Kernel for Avx2 {
             let y = _mm256_sub_ps(y, _mm256_mul_ps(dy, t));
             let z = _mm256_sub_ps(z, _mm256_mul_ps(dz, t));
             let radius = _mm256_add_ps(load(self, &block.radius), ray.pad);
-            let half = _mm256_mul_ps(radius, ray.step);
+            let zero = _mm256_setzero_ps();
             let off = dot(self, [x, y, z], [x, y, z]);
-            let beside = _mm256_cmp_ps::<_CMP_GT_OQ>(off, _mm256_mul_ps(radius, radius));
+            let left = _mm256_sub_ps(_mm256_mul_ps(radius, radius), off);
+            let half = _mm256_mul_ps(_mm256_sqrt_ps(_mm256_max_ps(left, zero)), ray.step);
+            let beside = _mm256_cmp_ps::<_CMP_LT_OQ>(left, zero);
             let beyond = _mm256_cmp_ps::<_CMP_GT_OQ>(_mm256_sub_ps(t, half), _mm256_set1_ps(t_max));
-            let behind = _mm256_cmp_ps::<_CMP_LT_OQ>(_mm256_add_ps(t, half), _mm256_setzero_ps());
+            let behind = _mm256_cmp_ps::<_CMP_LT_OQ>(_mm256_add_ps(t, half), zero);
             let missed = _mm256_or_ps(beside, _mm256_or_ps(beyond, behind));
             block.valid & !(_mm256_movemask_ps(missed) as u32)
         }

@@ -164,9 +164,10 @@ impl Kernel for Portable {
             let t = (x * dx + y * dy + z * dz) * ray.inverse;
             let (x, y, z) = (x - dx * t, y - dy * t, z - dz * t);
             let radius = block.radius[i] + ray.pad;
-            let half = radius * ray.step;
-            let off = x * x + y * y + z * z;
-            let missing = off > radius * radius || t - half > t_max || t + half < 0.0;
+            let left = radius * radius - (x * x + y * y + z * z);
+            // Half of what the ray's line has in the sphere.
+            let half = max(left, 0.0).sqrt() * ray.step;
+            let missing = left < 0.0 || t - half > t_max || t + half < 0.0;
             missed |= u32::from(missing) << i;
         }
         block.valid & !missed

@@ -93,7 +93,7 @@ impl Geometry {
             walk(kernel, &self.top, &boxes, &mut visitor);
         }
         if !(self.spheres.blocks.is_empty() || ANY && nearest.found()) {
-            let (tree, bounds) = (&self.spheres, &self.bounds);
+            let (tree, bounds) = (&self.spheres, &self.spheres.tree.bounds);
             let (boxes, mut visitor) =
                 Spheres::<K, ANY>::new(kernel, tree, &self.placed, ray, bounds, &mut nearest);
             walk(kernel, &tree.tree, &boxes, &mut visitor);
@@ -246,17 +246,14 @@ impl<'a, K: Kernel, const ANY: bool> Rays for SphereRays<'a, K, ANY> {
     fn next(&mut self) -> Option<(BoxRay, Self::Visitor)> {
         let (ray, nearest) = self.open.next::<ANY>()?;
         let Geometry {
-            spheres,
-            placed,
-            bounds,
-            ..
+            spheres, placed, ..
         } = self.geometry;
         Some(Spheres::new(
             self.kernel,
             spheres,
             placed,
             &ray,
-            bounds,
+            &spheres.tree.bounds,
             nearest,
         ))
     }
@@ -343,8 +340,8 @@ impl<K: Kernel, const ANY: bool> Visitor for Instances<'_, K, ANY> {
                     met.found && self.nearest.offer(met.t as f32, instance, 0, 0.0, 0.0)
                 }
                 Kind::Rectangle | Kind::Disk => {
-                    let (o, d) = placed.ray_to_object(&self.ray);
-                    let met = cross_flat(placed.kind == Kind::Disk, o, d);
+                    let (o, d) = (self.ray.origin.to_f64(), self.ray.direction.to_f64());
+                    let met = cross_flat(placed.kind == Kind::Disk, &placed.to_object, o, d);
                     let (x, y) = (met.x as f32, met.y as f32);
                     met.found && self.nearest.offer(met.t as f32, instance, 0, x, y)
                 }

@@ -200,11 +200,13 @@ impl Kernel for Simd128 {
             let y = f32x4_sub(y, f32x4_mul(dy, t));
             let z = f32x4_sub(z, f32x4_mul(dz, t));
             let radius = f32x4_add(load(&block.radius, half), ray.pad);
-            let step = f32x4_mul(radius, ray.step);
+            let zero = f32x4_splat(0.0);
             let off = dot([x, y, z], [x, y, z]);
-            let beside = f32x4_gt(off, f32x4_mul(radius, radius));
-            let beyond = f32x4_gt(f32x4_sub(t, step), f32x4_splat(t_max));
-            let behind = f32x4_lt(f32x4_add(t, step), f32x4_splat(0.0));
+            let left = f32x4_sub(f32x4_mul(radius, radius), off);
+            let half_chord = f32x4_mul(f32x4_sqrt(f32x4_pmax(zero, left)), ray.step);
+            let beside = f32x4_lt(left, zero);
+            let beyond = f32x4_gt(f32x4_sub(t, half_chord), f32x4_splat(t_max));
+            let behind = f32x4_lt(f32x4_add(t, half_chord), zero);
             let all = v128_or(beside, v128_or(beyond, behind));
             missed |= u32::from(i32x4_bitmask(all)) << (4 * half);
         }

@@ -130,27 +130,31 @@ impl Geometry {
     }
 }
 
-/// Rays that are tested with one shape after the other while they stay in the first cache.
-const BLOCK: usize = 64;
-
-/// Some rays, in double precision, as a structure of arrays. Behind the last they have no direction, and meet nothing.
-struct Block {
-    origin: [[f64; BLOCK]; 3],
-    direction: [[f64; BLOCK]; 3],
-}
-
 // The loops below are over plain numbers, one ray after the other, with nothing in them but arithmetic and choices: a compiler turns them
 // into vector instructions of any width by itself, better than it does with masks and numbers of two widths in lanes.
 
-impl Block {
+/// As many rays as fit a vector register, in double precision: they stay in registers while one shape after the other is tested. Behind the
+/// last they have no direction, and meet nothing.
+struct Block<const W: usize> {
+    origin: [[f64; W]; 3],
+    direction: [[f64; W]; 3],
+}
+
+impl<const W: usize> Block<W> {
     #[inline(always)]
     fn of(rays: &[[&[f32]; 3]; 2], at: usize, count: usize) -> Self {
-        let mut columns = [[[0.0; BLOCK]; 3]; 2];
+        let mut columns = [[[0.0; W]; 3]; 2];
         for k in 0..2 {
             for axis in 0..3 {
                 let source = &rays[k][axis][at..at + count];
-                for i in 0..count {
-                    columns[k][axis][i] = f64::from(source[i]);
+                let mut whole = [0.0; W];
+                if let Ok(all) = <[f32; W]>::try_from(source) {
+                    whole = all;
+                } else {
+                    whole[..count].copy_from_slice(source);
+                }
+                for i in 0..W {
+                    columns[k][axis][i] = f64::from(whole[i]);
                 }
             }
         }
@@ -158,21 +162,21 @@ impl Block {
         Self { origin, direction }
     }
 
-    /// Ray `i` in the coordinates of a shape.
     #[inline(always)]
-    fn in_object(&self, m: &Affine3<f64>, i: usize) -> [Vec3<f64>; 2] {
+    fn ray(&self, i: usize) -> [Vec3<f64>; 2] {
         let [ox, oy, oz] = &self.origin;
         let [dx, dy, dz] = &self.direction;
         [
-            m.transform_point(Vec3::new(ox[i], oy[i], oz[i])),
-            m.transform_vector(Vec3::new(dx[i], dy[i], dz[i])),
+            Vec3::new(ox[i], oy[i], oz[i]),
+            Vec3::new(dx[i], dy[i], dz[i]),
         ]
     }
 }
 
 /// A kind of shape, known when the loop over the rays is compiled.
 trait Crossed {
-    fn cross(o: Vec3<f64>, d: Vec3<f64>) -> Met<f64>;
+    /// - `m`: from the ray's coordinates to the shape's
+    fn cross(m: &Affine3<f64>, ray: [Vec3<f64>; 2]) -> Met<f64>;
 }
 
 struct Sphere;
@@ -181,22 +185,22 @@ struct Disk;
 
 impl Crossed for Sphere {
     #[inline(always)]
-    fn cross(o: Vec3<f64>, d: Vec3<f64>) -> Met<f64> {
-        cross_sphere(o, d)
+    fn cross(m: &Affine3<f64>, [o, d]: [Vec3<f64>; 2]) -> Met<f64> {
+        cross_sphere(m.transform_point(o), m.transform_vector(d))
     }
 }
 
 impl Crossed for Rectangle {
     #[inline(always)]
-    fn cross(o: Vec3<f64>, d: Vec3<f64>) -> Met<f64> {
-        cross_flat(false, o, d)
+    fn cross(m: &Affine3<f64>, [o, d]: [Vec3<f64>; 2]) -> Met<f64> {
+        cross_flat(false, m, o, d)
     }
 }
 
 impl Crossed for Disk {
     #[inline(always)]
-    fn cross(o: Vec3<f64>, d: Vec3<f64>) -> Met<f64> {
-        cross_flat(true, o, d)
+    fn cross(m: &Affine3<f64>, [o, d]: [Vec3<f64>; 2]) -> Met<f64> {
+        cross_flat(true, m, o, d)
     }
 }
 
@@ -207,50 +211,51 @@ struct Nearby<'a> {
 }
 
 /// The nearest hits of a block.
-struct Columns {
-    t: [f32; BLOCK],
-    u: [f32; BLOCK],
-    v: [f32; BLOCK],
-    instance: [u32; BLOCK],
+#[derive(Clone, Copy)]
+struct Columns<const W: usize> {
+    t: [f32; W],
+    u: [f32; W],
+    v: [f32; W],
+    instance: [u32; W],
 }
 
-impl Columns {
+impl<const W: usize> Columns<W> {
     /// Of shapes at the same t the first one stays.
     #[inline(always)]
-    fn test<S: Crossed>(&mut self, block: &Block, placed: &Placed, instance: u32) {
-        let m = placed.to_object;
-        for i in 0..BLOCK {
-            let [o, d] = block.in_object(&m, i);
-            let met = S::cross(o, d);
+    fn test<S: Crossed>(self, block: &Block<W>, placed: &Placed, instance: u32) -> Self {
+        // Written as a whole: what is written in part goes through memory.
+        let (m, mut next) = (placed.to_object, self);
+        for i in 0..W {
+            let met = S::cross(&m, block.ray(i));
             let nearer = met.found & ((met.t as f32) < self.t[i]);
-            self.t[i] = if nearer { met.t as f32 } else { self.t[i] };
-            self.u[i] = if nearer { met.x as f32 } else { self.u[i] };
-            self.v[i] = if nearer { met.y as f32 } else { self.v[i] };
-            self.instance[i] = if nearer { instance } else { self.instance[i] };
+            next.t[i] = if nearer { met.t as f32 } else { self.t[i] };
+            next.u[i] = if nearer { met.x as f32 } else { self.u[i] };
+            next.v[i] = if nearer { met.y as f32 } else { self.v[i] };
+            next.instance[i] = if nearer { instance } else { self.instance[i] };
         }
+        next
     }
 }
 
-impl Kernel for Nearby<'_> {
-    type Output = ();
+impl Nearby<'_> {
     #[inline(always)]
-    fn run<const L: usize>(self) {
+    fn by<const W: usize>(self) {
         let geometry = self.geometry;
-        for (k, hits) in self.hits.chunks_mut(BLOCK).enumerate() {
-            let block = Block::of(&self.rays, k * BLOCK, hits.len());
+        for (k, hits) in self.hits.chunks_mut(W).enumerate() {
+            let block = Block::<W>::of(&self.rays, k * W, hits.len());
             let mut nearest = Columns {
-                t: [NOTHING.t; BLOCK],
-                u: [NOTHING.u; BLOCK],
-                v: [NOTHING.v; BLOCK],
-                instance: [NOTHING.instance; BLOCK],
+                t: [NOTHING.t; W],
+                u: [NOTHING.u; W],
+                v: [NOTHING.v; W],
+                instance: [NOTHING.instance; W],
             };
             for &instance in &geometry.simple.shapes {
                 let placed = &geometry.placed[instance as usize];
-                match placed.kind {
+                nearest = match placed.kind {
                     Kind::Rectangle => nearest.test::<Rectangle>(&block, placed, instance),
                     Kind::Disk => nearest.test::<Disk>(&block, placed, instance),
                     Kind::Sphere => nearest.test::<Sphere>(&block, placed, instance),
-                    Kind::Mesh(_) => {}
+                    Kind::Mesh(_) => nearest,
                 }
             }
             for (i, hit) in hits.iter_mut().enumerate() {
@@ -266,6 +271,19 @@ impl Kernel for Nearby<'_> {
     }
 }
 
+impl Kernel for Nearby<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<const L: usize>(self) {
+        // Half as many numbers of double precision fit a register.
+        if L == 16 {
+            self.by::<8>();
+        } else {
+            self.by::<4>();
+        }
+    }
+}
+
 struct Anything<'a> {
     geometry: &'a Geometry,
     rays: [[&'a [f32]; 3]; 2],
@@ -275,17 +293,44 @@ struct Anything<'a> {
 
 /// Whether the rays of a block, which end at `t_max`, meet a shape; as numbers of the width of t, which suits vector instructions.
 #[inline(always)]
-fn test_any<S: Crossed>(
-    block: &Block,
+fn test_any<S: Crossed, const W: usize>(
+    block: &Block<W>,
     placed: &Placed,
-    t_max: &[f32; BLOCK],
-    met: &mut [u32; BLOCK],
+    t_max: &[f32; W],
+    met: &mut [u32; W],
 ) {
     let m = placed.to_object;
-    for i in 0..BLOCK {
-        let [o, d] = block.in_object(&m, i);
-        let crossed = S::cross(o, d);
+    for i in 0..W {
+        let crossed = S::cross(&m, block.ray(i));
         met[i] |= u32::from(crossed.found & ((crossed.t as f32) < t_max[i]));
+    }
+}
+
+impl Anything<'_> {
+    #[inline(always)]
+    fn by<const W: usize>(self) {
+        let geometry = self.geometry;
+        for (k, occluded) in self.occluded.chunks_mut(W).enumerate() {
+            let (at, count) = (k * W, occluded.len());
+            let block = Block::<W>::of(&self.rays, at, count);
+            let mut t_max = [0.0; W];
+            t_max[..count].copy_from_slice(&self.t_max[at..at + count]);
+            let mut met = [0; W];
+            for &instance in &geometry.simple.shapes {
+                let placed = &geometry.placed[instance as usize];
+                match placed.kind {
+                    Kind::Rectangle => {
+                        test_any::<Rectangle, W>(&block, placed, &t_max, &mut met);
+                    }
+                    Kind::Disk => test_any::<Disk, W>(&block, placed, &t_max, &mut met),
+                    Kind::Sphere => test_any::<Sphere, W>(&block, placed, &t_max, &mut met),
+                    Kind::Mesh(_) => {}
+                }
+            }
+            for (occluded, met) in occluded.iter_mut().zip(&met) {
+                *occluded = *met != 0;
+            }
+        }
     }
 }
 
@@ -293,27 +338,10 @@ impl Kernel for Anything<'_> {
     type Output = ();
     #[inline(always)]
     fn run<const L: usize>(self) {
-        let geometry = self.geometry;
-        for (k, occluded) in self.occluded.chunks_mut(BLOCK).enumerate() {
-            let (at, count) = (k * BLOCK, occluded.len());
-            let block = Block::of(&self.rays, at, count);
-            let mut t_max = [0.0; BLOCK];
-            t_max[..count].copy_from_slice(&self.t_max[at..at + count]);
-            let mut met = [0; BLOCK];
-            for &instance in &geometry.simple.shapes {
-                let placed = &geometry.placed[instance as usize];
-                match placed.kind {
-                    Kind::Rectangle => {
-                        test_any::<Rectangle>(&block, placed, &t_max, &mut met);
-                    }
-                    Kind::Disk => test_any::<Disk>(&block, placed, &t_max, &mut met),
-                    Kind::Sphere => test_any::<Sphere>(&block, placed, &t_max, &mut met),
-                    Kind::Mesh(_) => {}
-                }
-            }
-            for (occluded, met) in occluded.iter_mut().zip(&met) {
-                *occluded = *met != 0;
-            }
+        if L == 16 {
+            self.by::<8>();
+        } else {
+            self.by::<4>();
         }
     }
 }

@@ -81,8 +81,9 @@ fn largest_radius(m: &Affine3<f64>) -> f64 {
 /// A ray, prepared for bounding spheres.
 ///
 /// With u = 2⁻²⁴ and R the largest distance along an axis from the origin o to a corner of the scene's box: the centre of a sphere, relative to
-/// o, is right to u(|o| + R) + uR an axis; the point of the ray's line nearest to it, computed from that, to less than 16 u √3 R. `pad` is 64 u R and
-/// 8 u |o|, so that neither the distance between both nor t along the ray is ever on the wrong side of the padded radius.
+/// o, is right to u(|o| + R) + uR an axis; the point of the ray's line nearest to it, computed from that, to less than e = 16 u √3 R. `pad` p is 64 u R
+/// and 8 u |o|, so that the distance between both is never on the wrong side of the padded radius, nor t on that of the sphere's ends: with the distance
+/// ρ and half of the chord c² = r² − ρ², the padded (r + p)² − (ρ + e)² is at least c² + 2r(p − e) + p² − e² > (c + e)², as c ≤ r and p > 2e.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SphereRay {
     pub(crate) origin: [f32; 3],
