@@ -3,6 +3,7 @@
 use crate::adaptive::{self, Active, Goal};
 use crate::film::{Film, Kept};
 use crate::integrator::worth::Worth;
+use crate::integrator::{EnvironmentSampling, Path};
 use crate::pass::{Wanted, take_pass};
 use crate::{Exposure, Integrator, PixelFilter, RayCounts, RenderError, Screen};
 use gonio_radiometry::sequence::SamplerKind;
@@ -348,6 +349,18 @@ fn check(options: &RenderOptions, exposure: &Exposure) -> Result<(), RenderError
             "adaptive",
             "pixels that share a sequence".into(),
             "pixels that are independent of each other",
+        );
+    }
+    if let Integrator::Path(Path {
+        environment: EnvironmentSampling::Product(_),
+        light_candidates: 2..,
+        ..
+    }) = options.integrator
+    {
+        return fault(
+            "light candidates",
+            "several, with product sampling of the environment".into(),
+            "1, or another way to sample the environment: product sampling has candidates of its own",
         );
     }
     let film = &exposure.film;

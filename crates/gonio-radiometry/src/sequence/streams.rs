@@ -61,16 +61,6 @@ impl SampleStreams {
         self.reversed_indices.push(stream.reversed_index);
     }
 
-    /// Adds number `i` of other streams of the same kind.
-    ///
-    /// # Panics
-    /// If there is none.
-    #[inline(always)]
-    pub fn push_from(&mut self, others: &Self, i: usize) {
-        self.keys.push(others.keys[i]);
-        self.reversed_indices.push(others.reversed_indices[i]);
-    }
-
     /// Becomes all parts of others' streams, [`SampleStream::split`]: those of the first, then those of the second, and so on.
     pub fn split(&mut self, others: &Self, count: u32) {
         self.kind = others.kind;
@@ -101,9 +91,10 @@ impl SampleStreams {
     pub fn gather(&mut self, others: &Self, order: &[u32]) {
         self.kind = others.kind;
         self.clear();
-        for &i in order {
-            self.push_from(others, i as usize);
-        }
+        let keys = order.iter().map(|&i| others.keys[i as usize]);
+        self.keys.extend(keys);
+        let indices = order.iter().map(|&i| others.reversed_indices[i as usize]);
+        self.reversed_indices.extend(indices);
     }
 
     /// Number `i` as a stream of its own, at dimension 0.

@@ -177,7 +177,7 @@ pub(crate) mod dimension {
     pub const FILM: u32 = 0;
     /// The place on the lens, two numbers.
     pub const LENS: u32 = 2;
-    /// Where reflection `bounce` begins to draw: light position and choice (3), direction (3), roulette.
+    /// Where reflection `bounce` begins to draw: light position and choice (3), direction (3), roulette, resampling.
     pub const fn of_bounce(bounce: u32) -> u32 {
         4 + 8 * bounce
     }
@@ -185,6 +185,8 @@ pub(crate) mod dimension {
     pub const DIRECTION: u32 = 3;
     /// Offset of Russian roulette's number.
     pub const ROULETTE: u32 = 6;
+    /// Offset of the number by which a candidate among light samples is kept.
+    pub const RESAMPLING: u32 = 7;
     /// Partly transparent surfaces that one ray may meet; the last of them counts as opaque.
     pub const MOST_PASSED: u32 = 256;
     /// The number that decides whether the ray after `segment` reflections passes its surface number `passed`: far above

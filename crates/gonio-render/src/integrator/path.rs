@@ -7,7 +7,7 @@ use super::{
     EnvironmentSampling, RayCounts, dimension, light_at, power_heuristic, product, scaled, sum,
 };
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{Interior, Light, Scene};
+use gonio_scene::{Interior, Light, LightSample, Scene};
 
 /// Options of the path tracer.
 ///
@@ -28,6 +28,10 @@ pub struct Path {
     pub environment: EnvironmentSampling,
     /// Light samples at the first surface, 1 to [`Path::MOST`]. Powers of two are stratified best.
     pub light_samples: u32,
+    /// Candidates for each light sample at the first surface, 1 to [`Path::MOST`]: one is kept with a probability proportional to what it would
+    /// reflect if nothing stood in between, and only its shadow ray is followed (resampled importance sampling: Talbot, Cline and Egbert 2005).
+    /// Powers of two are stratified best. Not with [`EnvironmentSampling::Product`], which resamples by itself.
+    pub light_candidates: u32,
     /// Directions drawn at the first surface, with a path each, 1 to [`Path::MOST`]; a surface that reflects into single directions alone
     /// has one. Powers of two are stratified best.
     pub splitting: u32,
@@ -55,6 +59,7 @@ impl Default for Path {
             roulette_after: 4,
             environment: EnvironmentSampling::Luminance,
             light_samples: 1,
+            light_candidates: 1,
             splitting: 1,
             roulette: Roulette::Throughput,
         }
@@ -65,11 +70,25 @@ impl Default for Path {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Strategies {
     pub lights: u32,
+    /// Of each light sample.
+    pub candidates: u32,
     pub directions: u32,
 }
 
+/// How much a candidate counts: what it would reflect, in all channels.
+#[inline(always)]
+pub(super) fn weight([r, g, b]: [f32; 3]) -> f32 {
+    r + g + b
+}
+
 impl Strategies {
-    /// The density of all samples of lights together, where one has this.
+    /// Light samples that are drawn, kept or not.
+    #[inline(always)]
+    pub fn drawn(self) -> u32 {
+        self.lights * self.candidates
+    }
+
+    /// The density of all samples of lights together, where one has this. However many candidates there are, each sample has one shadow ray.
     #[inline(always)]
     pub fn of_lights(self, pdf: f32) -> f32 {
         self.lights as f32 * pdf
@@ -115,18 +134,18 @@ impl Path {
     #[inline(always)]
     pub(super) fn strategies(&self, bounce: u32, delta: bool) -> Strategies {
         let within = |n: u32| n.clamp(1, Self::MOST);
-        match bounce {
-            0 if delta => Strategies {
-                lights: within(self.light_samples),
-                directions: 1,
+        let first = bounce == 0;
+        Strategies {
+            lights: if first { within(self.light_samples) } else { 1 },
+            candidates: if first {
+                within(self.light_candidates)
+            } else {
+                1
             },
-            0 => Strategies {
-                lights: within(self.light_samples),
-                directions: within(self.splitting),
-            },
-            _ => Strategies {
-                lights: 1,
-                directions: 1,
+            directions: if first && !delta {
+                within(self.splitting)
+            } else {
+                1
             },
         }
     }
@@ -304,15 +323,66 @@ impl Path {
         }
         let strategies = self.strategies(bounce, false);
         for which in 0..strategies.lights {
-            let mut part = stream.split(strategies.lights, which);
             let interior = &walk.interior;
-            let (light, direct) = self.sample_light(
-                scene, vertex, bounce, strategies, interior, &mut part, counts,
-            );
+            let (light, direct) = if strategies.candidates == 1 {
+                let mut part = stream.split(strategies.lights, which);
+                self.sample_light(
+                    scene, vertex, bounce, strategies, interior, &mut part, counts,
+                )
+            } else {
+                let by = (strategies, which);
+                self.resample_lights(scene, vertex, bounce, by, interior, stream, counts)
+            };
             let arrived = product(walk.throughput, direct);
             walk.total = sum(walk.total, arrived);
             shares.add(light, bounce + 1, arrived);
         }
+    }
+
+    /// [`Path::sample_light`] of several candidates: the one that is kept stands for all.
+    ///
+    /// With c_k what candidate k would reflect by itself, its share of all that are drawn, and w_k the sum of its channels, candidate j is kept with the
+    /// probability w_j / Σ w_k, and c_j Σ w_k / w_j is reflected if nothing stands in between. The expectation is that of Σ c_k, each with its own
+    /// shadow ray (Talbot, Cline and Egbert 2005, "Importance Resampling for Global Illumination", eq. 5).
+    #[allow(clippy::too_many_arguments, reason = "the state of a path")]
+    fn resample_lights(
+        &self,
+        scene: &Scene,
+        vertex: &Vertex<'_>,
+        bounce: u32,
+        (strategies, which): (Strategies, u32),
+        interior: &Interior,
+        stream: &SampleStream,
+        counts: &mut RayCounts,
+    ) -> (Option<u32>, [f32; 3]) {
+        let (at, guide) = (vertex.receiver(), self.environment.guide(vertex));
+        let (mut kept, mut all) = (None, 0.0);
+        for candidate in 0..strategies.candidates {
+            let number = which * strategies.candidates + candidate;
+            let mut part = stream.split(strategies.drawn(), number);
+            part.seek(dimension::of_bounce(bounce));
+            let [u, v, choice] = part.next_3d();
+            let Some(mut light) = scene.lights.sample_by(guide, &at, choice, [u, v]) else {
+                continue;
+            };
+            light.pdf = strategies.of_lights(light.pdf);
+            let reflected = vertex.reflect_unblocked(&light, |density| {
+                joined(&light, strategies.of_directions(density))
+            });
+            let own = weight(reflected);
+            all += own;
+            part.seek(dimension::of_bounce(bounce) + dimension::RESAMPLING);
+            if part.next_1d() * all < own {
+                kept = Some((light, reflected, own));
+            }
+        }
+        let Some((light, reflected, own)) = kept else {
+            return (None, [0.0; 3]);
+        };
+        let standing = scaled(reflected, all / (strategies.candidates as f32 * own));
+        let (wi, target) = (light.wi, light.target);
+        let left = vertex.unblocked(scene, wi, target, standing, interior, counts);
+        (Some(light.light), left)
     }
 
     /// Light that comes straight from one of the lights, and which, scattered toward the viewer: one of several samples.
@@ -353,12 +423,18 @@ impl Path {
         };
         light.pdf = strategies.of_lights(light.pdf);
         let reflected = vertex.reflect_light(scene, &light, interior, counts, |density| {
-            if light.delta {
-                1.0
-            } else {
-                power_heuristic(light.pdf, strategies.of_directions(density))
-            }
+            joined(&light, strategies.of_directions(density))
         });
         (Some(light.light), reflected)
+    }
+}
+
+/// The weight of a light sample beside the directions that the reflection function draws with this density.
+#[inline(always)]
+fn joined(light: &LightSample, density: f32) -> f32 {
+    if light.delta {
+        1.0
+    } else {
+        power_heuristic(light.pdf, density)
     }
 }

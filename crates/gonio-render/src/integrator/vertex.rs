@@ -232,22 +232,23 @@ impl Vertex<'_> {
         counts: &mut RayCounts,
         weight: impl Fn(f32) -> f32,
     ) -> [f32; 3] {
+        let contribution = self.reflect_unblocked(sample, weight);
+        let (wi, target) = (sample.wi, sample.target);
+        self.unblocked(scene, wi, target, contribution, interior, counts)
+    }
+
+    /// [`Vertex::reflect_light`] if nothing stands in between.
+    pub(super) fn reflect_unblocked(
+        &self,
+        sample: &LightSample,
+        weight: impl Fn(f32) -> f32,
+    ) -> [f32; 3] {
         let (f_cos, density) = self.eval_cos(sample.wi);
         if f_cos == [0.0; 3] {
             return [0.0; 3];
         }
-        let contribution = scaled(
-            product(f_cos, sample.radiance),
-            weight(density) / sample.pdf,
-        );
-        self.unblocked(
-            scene,
-            sample.wi,
-            sample.target,
-            contribution,
-            interior,
-            counts,
-        )
+        let factor = weight(density) / sample.pdf;
+        scaled(product(f_cos, sample.radiance), factor)
     }
 
     /// What is left of `contribution`, which comes from `target` in the direction `wi`, by what stands in between.

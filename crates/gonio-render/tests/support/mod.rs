@@ -23,18 +23,20 @@ pub const INTEGRATORS: [Integrator; 4] = [
         roulette_after: 4,
         environment: EnvironmentSampling::Luminance,
         light_samples: 1,
+        light_candidates: 1,
         splitting: 1,
         roulette: Roulette::Throughput,
     }),
     SPLIT,
     JUDGED,
 ];
-/// Path tracing with several samples at the first surface.
+/// Path tracing with several samples at the first surface, and several candidates for each of light.
 pub const SPLIT: Integrator = Integrator::Path(Path {
     max_bounces: 64,
     roulette_after: 2,
     environment: EnvironmentSampling::Luminance,
     light_samples: 4,
+    light_candidates: 2,
     splitting: 2,
     roulette: Roulette::Throughput,
 });
@@ -44,6 +46,7 @@ pub const JUDGED: Integrator = Integrator::Path(Path {
     roulette_after: 4,
     environment: EnvironmentSampling::Luminance,
     light_samples: 1,
+    light_candidates: 1,
     splitting: 1,
     roulette: Roulette::Efficiency,
 });

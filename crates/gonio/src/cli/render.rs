@@ -150,6 +150,10 @@ pub(super) struct Arguments {
     /// Light samples at the first surface of each camera ray; powers of two are stratified best
     #[arg(long, value_name = "N", default_value_t = PathTracer::default().light_samples, value_parser = parse::whole(1, PathTracer::MOST), allow_hyphen_values = true, help_heading = "Method")]
     light_samples: u32,
+    /// Candidates for each of those, of which one is kept by what it would reflect, and has the only shadow ray (resampled importance sampling); not with
+    /// --env-sampling product
+    #[arg(long, value_name = "N", default_value_t = PathTracer::default().light_candidates, value_parser = parse::whole(1, PathTracer::MOST), allow_hyphen_values = true, help_heading = "Method")]
+    light_candidates: u32,
     /// Paths that go on from the first surface of each camera ray; powers of two are stratified best
     #[arg(long, value_name = "N", default_value_t = PathTracer::default().splitting, value_parser = parse::whole(1, PathTracer::MOST), allow_hyphen_values = true, help_heading = "Method")]
     splitting: u32,
@@ -489,6 +493,7 @@ fn options(arguments: &Arguments, scene: &Scene, range: &Range<u32>) -> RenderOp
                 environment: environment_sampling(arguments),
                 roulette_after: arguments.roulette_after,
                 light_samples: arguments.light_samples,
+                light_candidates: arguments.light_candidates,
                 splitting: arguments.splitting,
                 roulette: match arguments.roulette {
                     RouletteName::Throughput => Roulette::Throughput,

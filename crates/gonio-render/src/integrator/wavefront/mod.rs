@@ -6,6 +6,7 @@
 
 mod direct;
 mod gathered;
+mod kept;
 mod paths;
 mod scatter;
 mod surface;
@@ -44,12 +45,18 @@ pub(crate) struct Plan<'a> {
     guide: Guide,
     /// For each material its reflection function, if that is the same all over the surface.
     models: Vec<Option<&'a Model<f32, 3>>>,
-    /// The bucket of each instance: instances of one material are neighbours.
-    bucket: Vec<u32>,
+    /// What a ray meets: each instance, and nothing.
+    met: Vec<Met>,
     /// The material of each bucket.
     material: Vec<u32>,
-    /// How each instance emits light.
-    shines: Vec<Shines>,
+}
+
+/// What is known of an instance that a ray meets.
+#[derive(Debug, Clone, Copy)]
+struct Met {
+    /// Instances of one material are neighbours.
+    bucket: u32,
+    shines: Shines,
 }
 
 /// How a surface emits light.
@@ -118,11 +125,17 @@ impl<'a> Plan<'a> {
             worth,
             guide,
             models: scene.materials.iter().map(|m| m.even_model()).collect(),
-            bucket,
-            material,
-            shines: (instances.iter())
-                .map(|i| Shines::of(&scene.materials[i.material as usize]))
+            met: (instances.iter().zip(bucket))
+                .map(|(i, bucket)| Met {
+                    bucket,
+                    shines: Shines::of(&scene.materials[i.material as usize]),
+                })
+                .chain([Met {
+                    bucket: u32::MAX,
+                    shines: Shines::Not,
+                }])
                 .collect(),
+            material,
         })
     }
 }
@@ -131,6 +144,12 @@ impl<'a> Plan<'a> {
     /// What roulette knows of the scene.
     pub fn worth(&self) -> Option<&'a Worth> {
         self.worth
+    }
+
+    /// What a ray met.
+    #[inline(always)]
+    fn met(&self, hit: &Hit) -> Met {
+        self.met[(hit.instance as usize).min(self.met.len() - 1)]
     }
 
     /// Samples in a wave.
@@ -147,6 +166,8 @@ pub(crate) struct Wavefront<'a> {
     hits: Vec<Hit>,
     /// The paths that met a surface and go on, by material.
     order: Vec<u32>,
+    /// The bucket of what each path met.
+    bucket: Vec<u32>,
     /// Paths in each bucket; all zero between uses.
     population: Vec<u32>,
     /// Buckets that have any.
@@ -188,6 +209,7 @@ impl<'a> Wavefront<'a> {
             next: Paths::new(),
             hits: Vec::new(),
             order: Vec::new(),
+            bucket: Vec::new(),
             population: vec![0; plan.material.len()],
             occupied: Vec::new(),
             vertices: Vertices::new(plan),
@@ -257,7 +279,7 @@ impl<'a> Wavefront<'a> {
     /// Gives each light sample at the first surfaces its numbers, and each path that goes on from there.
     fn split(&mut self, streams: &SampleStreams) {
         let strategies = self.plan.path.strategies(0, false);
-        self.lighting.split(streams, strategies.lights);
+        self.lighting.split(streams, strategies.drawn());
         self.going.split(streams, strategies.directions);
         if strategies.directions == 1 {
             return;
@@ -277,19 +299,31 @@ impl<'a> Wavefront<'a> {
         let plan = self.plan;
         let strategies = plan.path.strategies(segment, false);
         for which in 0..strategies.lights {
-            let ids = self.order.iter().map(|&k| self.paths.id[k as usize]);
-            self.ids.clear();
-            if segment == 0 {
-                let first = ids.map(|id| id / plan.paths as u32 * strategies.lights);
-                self.ids.extend(first.map(|first| first + which));
-                self.vertices.streams.gather(&self.lighting, &self.ids);
-            } else {
-                self.ids.extend(ids);
-                self.vertices.streams.gather(&self.going, &self.ids);
+            for candidate in 0..strategies.candidates {
+                let ids = self.order.iter().map(|&k| self.paths.id[k as usize]);
+                self.ids.clear();
+                if segment == 0 {
+                    let each = strategies.drawn();
+                    let number = which * strategies.candidates + candidate;
+                    let first = ids.map(|id| id / plan.paths as u32 * each);
+                    self.ids.extend(first.map(|first| first + number));
+                    self.vertices.streams.gather(&self.lighting, &self.ids);
+                } else {
+                    self.ids.extend(ids);
+                    self.vertices.streams.gather(&self.going, &self.ids);
+                }
+                let direct = &mut self.direct;
+                direct.draw(plan.scene, plan.guide, &self.vertices, segment);
+                direct.reflect(&self.vertices, strategies);
+                if strategies.candidates > 1 {
+                    direct.consider(candidate, &self.vertices, segment);
+                }
             }
             let direct = &mut self.direct;
-            direct.draw(plan.scene, plan.guide, &self.vertices, segment);
-            direct.reflect(plan.scene, &self.vertices, strategies, counts);
+            if strategies.candidates > 1 {
+                direct.decide(strategies.candidates);
+            }
+            direct.follow(plan.scene, &self.vertices, counts);
             for (i, contribution) in direct.contributions() {
                 let k = self.order[i] as usize;
                 let arrived = product(self.paths.throughput(k), contribution);
@@ -355,22 +389,40 @@ impl<'a> Wavefront<'a> {
     fn follow(&mut self, segment: u32, light: &mut Gathered<'_>, counts: &mut RayCounts) {
         let scene = self.plan.scene;
         counts.nearest += self.paths.len() as u64;
-        self.order.clear();
-        self.lit.clear();
-        self.missed.clear();
         let rays = [&self.paths.origin, &self.paths.direction];
         scene.geometry.intersect_many(rays, &mut self.hits);
-        for i in 0..self.hits.len() {
-            let hit = &self.hits[i];
-            if hit.t == f32::INFINITY {
-                self.missed.push(i as u32);
-                continue;
-            }
-            self.order.push(i as u32);
-            match self.plan.shines[hit.instance as usize] {
-                Shines::Not => {}
-                Shines::Evenly => self.lit.push(i as u32),
-                Shines::Unevenly => {
+        let (plan, hits) = (self.plan, &self.hits[..]);
+        let lists = [
+            &mut self.order,
+            &mut self.missed,
+            &mut self.lit,
+            &mut self.bucket,
+        ];
+        for list in lists {
+            list.resize(hits.len(), 0);
+        }
+        // Into each list without a branch, which no processor would predict.
+        let [mut some, mut none, mut lit] = [0; 3];
+        let mut unevenly = false;
+        for (i, hit) in hits.iter().enumerate() {
+            let met = plan.met(hit);
+            let is_met = hit.t < f32::INFINITY;
+            self.bucket[i] = met.bucket;
+            self.order[some] = i as u32;
+            some += usize::from(is_met);
+            self.missed[none] = i as u32;
+            none += usize::from(!is_met);
+            self.lit[lit] = i as u32;
+            lit += usize::from(met.shines == Shines::Evenly);
+            unevenly |= met.shines == Shines::Unevenly;
+        }
+        self.order.truncate(some);
+        self.missed.truncate(none);
+        self.lit.truncate(lit);
+        if unevenly {
+            for i in 0..self.hits.len() {
+                let hit = &self.hits[i];
+                if plan.met(hit).shines == Shines::Unevenly {
                     let point = scene.geometry.surface(&self.paths.ray(i), hit);
                     self.take_in(segment, i, &point, light);
                 }
@@ -479,8 +531,8 @@ impl<'a> Wavefront<'a> {
     /// Puts `order` in the order of materials and instances, paths at one in their own order, and tells the vertices the groups.
     fn sort(&mut self) {
         let plan = self.plan;
-        let (hits, population) = (&self.hits, &mut self.population);
-        let bucket_of = |k: u32| plan.bucket[hits[k as usize].instance as usize] as usize;
+        let (buckets, population) = (&self.bucket, &mut self.population);
+        let bucket_of = |k: u32| buckets[k as usize] as usize;
         self.occupied.clear();
         for &k in &self.order {
             let bucket = bucket_of(k);

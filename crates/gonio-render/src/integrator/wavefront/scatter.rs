@@ -3,6 +3,7 @@
 // Loops over an index are what vectorises.
 #![allow(clippy::needless_range_loop)]
 
+use super::kept::Kept;
 use super::paths::Paths;
 use super::surface::{Reflects, Vertices, directions};
 use super::{Part, dimension};
@@ -22,9 +23,11 @@ pub(super) struct Scatter {
     weight: [Vec<f32>; 3],
     pdf: Vec<f32>,
     delta: Vec<bool>,
+    /// What each path would carry on.
+    throughput: [Vec<f32>; 3],
     /// Whether each path goes on, as a number; and the vertices of those that do.
     alive: Vec<u32>,
-    going: Vec<u32>,
+    going: Kept,
 }
 
 impl Scatter {
@@ -170,60 +173,57 @@ impl Scatter {
         &mut self,
         vertices: &Vertices<'_>,
         (paths, order): (&Paths, &[u32]),
-        (next, mut place): (&mut Paths, usize),
+        (next, place): (&mut Paths, usize),
     ) -> usize {
         let count = vertices.len();
+        for (column, (from, weight)) in
+            (self.throughput.iter_mut()).zip(paths.throughput.iter().zip(&self.weight))
+        {
+            column.resize(whole_steps(count), 0.0);
+            for (t, (&k, w)) in column.iter_mut().zip(order.iter().zip(weight)) {
+                *t = from[k as usize] * w;
+            }
+        }
         self.alive.resize(whole_steps(count), 0);
         dispatch(Alive {
-            pdf: &self.pdf[..count],
+            pdf: &mut self.pdf[..count],
+            delta: &self.delta[..count],
+            throughput: self.throughput.each_ref().map(|c| &c[..]),
             wi: self.wi_world.axes(),
             wo: vertices.wo_world.axes(),
             ng: vertices.surfaces.ng.axes(),
             alive: &mut self.alive[..count],
         });
-        let first = place;
-        self.going.resize(count, 0);
-        let weight = self.weight.each_ref().map(|w| &w[..count]);
-        let (pdf, delta) = (&self.pdf[..count], &self.delta[..count]);
-        for (i, (&k, &alive)) in order.iter().zip(&self.alive[..count]).enumerate() {
-            if alive == 0 {
-                continue;
-            }
-            let mut throughput = paths.throughput(k as usize);
-            for (t, w) in throughput.iter_mut().zip(weight) {
-                *t *= w[i];
-            }
-            if throughput == [0.0; 3] {
-                continue;
-            }
-            next.id[place] = paths.id[k as usize];
-            next.vertex[place] = i as u32;
-            for (column, value) in next.throughput.iter_mut().zip(throughput) {
-                column[place] = value;
-            }
-            next.pdf[place] = if delta[i] { f32::INFINITY } else { pdf[i] };
-            self.going[place - first] = i as u32;
-            place += 1;
+        let going = &mut self.going;
+        going.choose(&self.alive[..count]);
+        let end = place + going.len();
+        next.vertex[place..end].copy_from_slice(&going.indices);
+        for (id, &i) in next.id[place..end].iter_mut().zip(&going.indices) {
+            *id = paths.id[order[i as usize] as usize];
         }
-        let going = &self.going[..place - first];
-        let vectors = [
-            (&mut next.origin, &self.origins),
-            (&mut next.direction, &self.wi_world),
+        let [ox, oy, oz] = next.origin.axes_mut();
+        let [dx, dy, dz] = next.direction.axes_mut();
+        let [r, g, b] = next.throughput.each_mut();
+        let to = [ox, oy, oz, dx, dy, dz, r, g, b, &mut next.pdf];
+        let [from_x, from_y, from_z] = self.origins.axes();
+        let [wi_x, wi_y, wi_z] = self.wi_world.axes();
+        let [from_r, from_g, from_b] = self.throughput.each_ref();
+        let from = [
+            from_x, from_y, from_z, wi_x, wi_y, wi_z, from_r, from_g, from_b, &self.pdf,
         ];
-        for (to, from) in vectors {
-            for (to, from) in to.axes_mut().into_iter().zip(from.axes()) {
-                for (to, &i) in to[first..place].iter_mut().zip(going) {
-                    *to = from[i as usize];
-                }
-            }
+        for (to, from) in to.into_iter().zip(from) {
+            going.copy(from, &mut to[place..end]);
         }
-        place
+        end
     }
 }
 
-/// Which paths go on: those that have a direction, which lies on the viewer's side of the true surface.
+/// Which paths go on: those that carry something in a direction that lies on the viewer's side of the true surface. The density of one that was
+/// the only one becomes ∞.
 struct Alive<'a> {
-    pdf: &'a [f32],
+    pdf: &'a mut [f32],
+    delta: &'a [bool],
+    throughput: [&'a [f32]; 3],
     wi: [&'a [f32]; 3],
     wo: [&'a [f32]; 3],
     ng: [&'a [f32]; 3],
@@ -237,7 +237,8 @@ impl Kernel for Alive<'_> {
     #[inline(always)]
     fn run<const L: usize>(self) {
         let count = self.alive.len();
-        let pdf = &self.pdf[..count];
+        let (pdf, delta) = (&mut self.pdf[..count], &self.delta[..count]);
+        let [r, g, b] = columns(self.throughput, count);
         let (wi, wo, ng) = (
             columns(self.wi, count),
             columns(self.wo, count),
@@ -247,7 +248,10 @@ impl Kernel for Alive<'_> {
             let n = Vec3::new(ng[0][i], ng[1][i], ng[2][i]);
             let inward = Vec3::new(wi[0][i], wi[1][i], wi[2][i]).dot(n);
             let outward = Vec3::new(wo[0][i], wo[1][i], wo[2][i]).dot(n);
-            self.alive[i] = u32::from((pdf[i] > 0.0) & (inward * outward > 0.0));
+            let carries = (r[i] != 0.0) | (g[i] != 0.0) | (b[i] != 0.0);
+            let alive = (pdf[i] > 0.0) & (inward * outward > 0.0) & carries;
+            self.alive[i] = u32::from(alive);
+            pdf[i] = if delta[i] { f32::INFINITY } else { pdf[i] };
         }
     }
 }
