@@ -43,6 +43,9 @@ pub fn run(parts: &[&str]) -> Result<(), String> {
             .arg("--work")
             .arg(folder.join(part))
             .current_dir(root);
+        if part == "error" {
+            command.arg("--denoise");
+        }
         if let Some(library) = llvm() {
             command.env("DRJIT_LIBLLVM_PATH", library);
         }
@@ -63,11 +66,16 @@ pub fn run(parts: &[&str]) -> Result<(), String> {
     Ok(())
 }
 
-/// The interpreter of the virtual environment, made with what `requirements.txt` names where there is none.
+/// The interpreter of the virtual environment, made with what `requirements.txt` names where there is none, or names more now.
 fn environment(root: &Path, folder: &Path) -> Result<PathBuf, String> {
     let python = folder.join("venv/bin/python");
-    let done = folder.join("venv/installed");
-    if !done.exists() {
+    let (wanted, done) = (
+        root.join("benches/peers/requirements.txt"),
+        folder.join("venv/installed"),
+    );
+    let packages =
+        std::fs::read_to_string(&wanted).map_err(|e| format!("{}: {e}", wanted.display()))?;
+    if std::fs::read_to_string(&done).ok() != Some(packages.clone()) {
         std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
         call(
             Command::new("python3")
@@ -77,9 +85,9 @@ fn environment(root: &Path, folder: &Path) -> Result<PathBuf, String> {
         call(
             Command::new(&python)
                 .args(["-m", "pip", "install", "--quiet", "-r"])
-                .arg(root.join("benches/peers/requirements.txt")),
+                .arg(&wanted),
         )?;
-        std::fs::write(&done, "").map_err(|e| format!("{}: {e}", done.display()))?;
+        std::fs::write(&done, packages).map_err(|e| format!("{}: {e}", done.display()))?;
     }
     Ok(python)
 }

@@ -18,6 +18,9 @@
 //! The idea is that of Demmel & Nguyen 2015, "Parallel reproducible summation", with integers instead of floating-point bins, so
 //! that no carry is ever needed.
 
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
 /// Adds `value`, finite and not negative.
 #[inline]
 pub(crate) fn add<const K: usize>(bins: &mut [u64; K], top: &mut u8, value: f64) {
@@ -181,13 +184,15 @@ mod tests {
 
         #[test]
         fn sums_side_by_side_are_those_one_by_one(
-            values in prop::collection::vec([any_f32(), any_f32(), Just(0.0), any_f32()], 1..20),
+            values in prop::collection::vec([any_f32(), any_f32(), any_f32()], 1..20),
         ) {
-            let mut digits = [[0; 4]; 3];
-            let mut tops = [0; 4];
+            let some_zero = |(k, [a, b, c]): (usize, [f64; 3])| [a, b, if k % 2 == 0 { 0.0 } else { c }];
+            let values: Vec<[f64; 3]> = values.into_iter().enumerate().map(some_zero).collect();
+            let mut digits = [[0; 3]; 3];
+            let mut tops = [0; 3];
             for values in &values {
                 if are_above(&tops, values) {
-                    for i in 0..4 {
+                    for i in 0..3 {
                         let mut one = [0, 1, 2].map(|k: usize| digits[k][i]);
                         raise(&mut one, &mut tops[i], place(values[i]));
                         (0..3).for_each(|k| digits[k][i] = one[k]);
@@ -195,7 +200,7 @@ mod tests {
                 }
                 add_all(&mut digits, &tops, values);
             }
-            for i in 0..4 {
+            for i in 0..3 {
                 let column: Vec<f64> = values.iter().map(|v| v[i]).collect();
                 let found = [0, 1, 2].map(|k: usize| digits[k][i]);
                 prop_assert_eq!((found, tops[i]), sum::<3>(&column));
