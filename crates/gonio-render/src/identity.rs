@@ -127,6 +127,7 @@ impl Identity {
 mod tests {
     use super::*;
     use crate::Target;
+    use crate::integrator::{LightChoice, Path};
     use gonio_num::Vec3;
 
     fn camera(height: f32) -> Camera {
@@ -189,6 +190,17 @@ mod tests {
             coarse.mismatch(&fine).map(|m| m.what).as_deref(),
             Some("adaptive")
         );
+        for light_choice in [LightChoice::Power, LightChoice::Uniform] {
+            let path = Path {
+                light_choice,
+                ..Path::default()
+            };
+            let options = RenderOptions {
+                integrator: crate::Integrator::Path(path),
+                ..options
+            };
+            assert_eq!(other("ab", 2.0, &options).as_deref(), Some("integrator"));
+        }
         let direct = RenderOptions {
             integrator: crate::Integrator::Direct(crate::integrator::Direct::default()),
             ..options

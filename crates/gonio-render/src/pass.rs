@@ -309,7 +309,7 @@ mod tests {
     use super::*;
     use crate::Integrator;
     use crate::film::Kept;
-    use crate::integrator::{EnvironmentSampling, Path, Roulette};
+    use crate::integrator::{EnvironmentSampling, LightChoice, Path, Roulette};
     use gonio_brdf::ModelSpec;
     use gonio_env::{Environment, Layout};
     use gonio_image::Image;
@@ -471,6 +471,28 @@ mod tests {
                     max_bounces: 9,
                     splitting: 2,
                     roulette: Roulette::Efficiency,
+                    ..Path::default()
+                },
+            ),
+            (
+                panorama(),
+                EnvironmentSampling::Luminance,
+                SamplerKind::Sobol,
+                Path {
+                    max_bounces: 5,
+                    light_choice: LightChoice::Power,
+                    light_samples: 2,
+                    ..Path::default()
+                },
+            ),
+            (
+                panorama(),
+                EnvironmentSampling::Compensated,
+                SamplerKind::Independent,
+                Path {
+                    max_bounces: 5,
+                    light_choice: LightChoice::Uniform,
+                    splitting: 2,
                     ..Path::default()
                 },
             ),

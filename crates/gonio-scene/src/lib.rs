@@ -23,7 +23,8 @@ pub use files::{Files, Told, Watch};
 pub use geometry::{Aabb, AreaSample, Geometry, Instance, Shape, SurfacePoint, Surfaces};
 pub use interior::{Body, Interior};
 pub use light::{
-    Light, LightRef, LightSample, LightSamples, LightTarget, Lights, NO_GROUP, Receiver, SpotCone,
+    Light, LightChoice, LightRef, LightSample, LightSampler, LightSamples, LightTarget, Lights,
+    NO_GROUP, Receiver, SpotCone,
 };
 pub use material::{Material, Shading, facing_frame};
 pub use mesh::TriangleMesh;

@@ -86,9 +86,9 @@ pub(super) fn accumulate(
 
 impl Cdf<'_> {
     /// The cell that owns the point `u` of [0, 1), and where in it the point lies, in [0, 1).
-    pub(super) fn find(&self, u: f32) -> (usize, f64) {
+    pub(super) fn find(&self, u: f64) -> (usize, f64) {
         // NaN and negative numbers count as 0, numbers from 1 up as the last unit.
-        let scaled = f64::from(u) * UNITS as f64;
+        let scaled = u * UNITS as f64;
         let unit = scaled as u32;
         let starts = &self.starts[..=self.last as usize];
         let cell = starts.partition_point(|&s| s <= unit).max(1) - 1;

@@ -50,6 +50,11 @@ impl Discrete {
     /// The index that u in [0, 1) chooses, its probability, and u remapped to [0, 1): the place of u within the interval of
     /// that index, with as many digits fewer as the choice used. An index of weight 0 is never chosen.
     pub fn sample(&self, u: f32) -> (usize, f32, f32) {
+        self.sample_fine(u.into())
+    }
+
+    /// [`Discrete::sample`] with more digits: an index whose probability is less than 2⁻²⁴ is chosen as often as it should be.
+    pub fn sample_fine(&self, u: f64) -> (usize, f32, f32) {
         let (index, within) = self.cdf().find(u);
         let rest = (within as f32).min(cdf::LARGEST_BELOW_ONE);
         (index, self.probability(index), rest)

@@ -43,7 +43,7 @@ impl Piecewise1d {
     /// The x in [0, 1) that u in [0, 1) maps to, and the density there, which is positive. Continuous and rising in u, but
     /// for jumps over cells of zero.
     pub fn sample(&self, u: f32) -> (f32, f32) {
-        let (cell, within) = self.cdf().find(u);
+        let (cell, within) = self.cdf().find(u.into());
         (
             cdf::coordinate(cell, within, self.starts.len()),
             self.density_of_cell(cell),
@@ -163,8 +163,8 @@ impl Piecewise2d {
     /// The point (x, y) of [0, 1)² that u in [0, 1)² maps to (u₀ to x, u₁ to y), and the density there, by area, which is
     /// positive and equals [`density`](Self::density) of the point. Rows, columns and cells of zero are never chosen.
     pub fn sample(&self, u: [f32; 2]) -> ([f32; 2], f32) {
-        let (row, down) = self.rows().find(u[1]);
-        let (column, right) = self.columns(row).find(u[0]);
+        let (row, down) = self.rows().find(u[1].into());
+        let (column, right) = self.columns(row).find(u[0].into());
         let x = cdf::coordinate(column, right, self.width);
         let y = cdf::coordinate(row, down, self.height());
         ([x, y], self.density_of_cell(column, row))

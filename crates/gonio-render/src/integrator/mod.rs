@@ -10,6 +10,7 @@ pub(crate) mod worth;
 
 pub use direct::Direct;
 pub use environment::EnvironmentSampling;
+pub use gonio_scene::LightChoice;
 pub use path::{Path, Roulette};
 pub use vertex::Vertex;
 

@@ -7,7 +7,7 @@ use super::{
     EnvironmentSampling, RayCounts, dimension, light_at, power_heuristic, product, scaled, sum,
 };
 use gonio_radiometry::sequence::SampleStream;
-use gonio_scene::{Interior, Light, LightSample, Scene};
+use gonio_scene::{Interior, Light, LightChoice, LightSample, Scene};
 
 /// Options of the path tracer.
 ///
@@ -26,6 +26,8 @@ pub struct Path {
     pub roulette_after: u32,
     /// How light from the environment is sampled.
     pub environment: EnvironmentSampling,
+    /// How the light is chosen that a light sample is of.
+    pub light_choice: LightChoice,
     /// Light samples at the first surface, 1 to [`Path::MOST`]. Powers of two are stratified best.
     pub light_samples: u32,
     /// Candidates for each light sample at the first surface, 1 to [`Path::MOST`]: one is kept with a probability proportional to what it would
@@ -52,12 +54,13 @@ pub enum Roulette {
 }
 
 impl Default for Path {
-    /// 64 reflections at most, roulette after 4, nothing split.
+    /// 64 reflections at most, roulette after 4, lights chosen by a tree, nothing split.
     fn default() -> Self {
         Self {
             max_bounces: 64,
             roulette_after: 4,
             environment: EnvironmentSampling::Luminance,
+            light_choice: LightChoice::Tree,
             light_samples: 1,
             light_candidates: 1,
             splitting: 1,
@@ -259,6 +262,7 @@ impl Path {
             }
         };
         let from = vertex.receiver();
+        let lights = scene.lights.by(self.light_choice);
         let next = arrive(
             scene,
             &ray,
@@ -274,7 +278,7 @@ impl Path {
             }
             let guide = self.environment.guide(vertex);
             let (radiance, density) =
-                (scene.lights).environment_radiance_and_pdf_by(guide, from.p, drawn.wi);
+                lights.environment_radiance_and_pdf_by(guide, from.p, drawn.wi);
             let arrived = scaled(product(walk.throughput, radiance), weight(density));
             walk.total = sum(walk.total, arrived);
             shares.add(scene.lights.environment_index(), bounce + 1, arrived);
@@ -282,7 +286,7 @@ impl Path {
         };
         let radiance = scene.emitted(&next.point, next.wo_world);
         if radiance != [0.0; 3] {
-            let density = scene.lights.pdf_area(&from, &next.point, drawn.wi);
+            let density = lights.pdf_area(&from, &next.point, drawn.wi);
             let arrived = scaled(product(walk.throughput, radiance), weight(density));
             walk.total = sum(walk.total, arrived);
             shares.add(light_at(scene, &next.point), bounce + 1, arrived);
@@ -356,13 +360,14 @@ impl Path {
         counts: &mut RayCounts,
     ) -> (Option<u32>, [f32; 3]) {
         let (at, guide) = (vertex.receiver(), self.environment.guide(vertex));
+        let lights = scene.lights.by(self.light_choice);
         let (mut kept, mut all) = (None, 0.0);
         for candidate in 0..strategies.candidates {
             let number = which * strategies.candidates + candidate;
             let mut part = stream.split(strategies.drawn(), number);
             part.seek(dimension::of_bounce(bounce));
             let [u, v, choice] = part.next_3d();
-            let Some(mut light) = scene.lights.sample_by(guide, &at, choice, [u, v]) else {
+            let Some(mut light) = lights.sample_by(guide, &at, choice, [u, v]) else {
                 continue;
             };
             light.pdf = strategies.of_lights(light.pdf);
@@ -400,7 +405,7 @@ impl Path {
     ) -> (Option<u32>, [f32; 3]) {
         stream.seek(dimension::of_bounce(bounce));
         let [u, v, choice] = stream.next_3d();
-        let lights = &scene.lights;
+        let lights = scene.lights.by(self.light_choice);
         let at = vertex.receiver();
         if let EnvironmentSampling::Product(candidates) = self.environment
             && let Some((chosen, probability)) = lights.choose(&at, choice)

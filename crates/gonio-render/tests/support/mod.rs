@@ -7,7 +7,7 @@ use gonio_brdf::ModelSpec;
 use gonio_env::Environment;
 use gonio_num::{Affine3, Vec3};
 use gonio_radiometry::sequence::SamplerKind;
-use gonio_render::integrator::{Direct, EnvironmentSampling, Path, Roulette};
+use gonio_render::integrator::{Direct, EnvironmentSampling, LightChoice, Path, Roulette};
 use gonio_render::{Film, Integrator, Kept, PixelFilter, RenderOptions, Screen, Target, render};
 use gonio_scene::{Camera, Light, Material, Scene, SceneBuilder, Shape};
 use gonio_verify::statistics::{Moments, t_test};
@@ -22,6 +22,7 @@ pub const INTEGRATORS: [Integrator; 4] = [
         max_bounces: 64,
         roulette_after: 4,
         environment: EnvironmentSampling::Luminance,
+        light_choice: LightChoice::Tree,
         light_samples: 1,
         light_candidates: 1,
         splitting: 1,
@@ -35,6 +36,7 @@ pub const SPLIT: Integrator = Integrator::Path(Path {
     max_bounces: 64,
     roulette_after: 2,
     environment: EnvironmentSampling::Luminance,
+    light_choice: LightChoice::Tree,
     light_samples: 4,
     light_candidates: 2,
     splitting: 2,
@@ -45,6 +47,7 @@ pub const JUDGED: Integrator = Integrator::Path(Path {
     max_bounces: 64,
     roulette_after: 4,
     environment: EnvironmentSampling::Luminance,
+    light_choice: LightChoice::Tree,
     light_samples: 1,
     light_candidates: 1,
     splitting: 1,

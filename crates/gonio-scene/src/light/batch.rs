@@ -6,7 +6,7 @@
 use super::choice::Chosen as Drawn;
 use super::emitter::{Emitter, Form, Rectangle, Sphere, Toward};
 use super::tree::Walks;
-use super::{Light, LightTarget, Lights, WHOLE};
+use super::{Light, LightSampler, LightTarget, Lights, WHOLE};
 use crate::Surfaces;
 use gonio_env::{EnvSamples, Guide};
 use gonio_num::dispatch::{Kernel, dispatch};
@@ -137,10 +137,10 @@ impl LightSamples {
     }
 }
 
-impl Lights {
-    /// [`Lights::sample_by`] from many points, the same to the bit.
+impl LightSampler<'_> {
+    /// [`LightSampler::sample_by`] from many points, the same to the bit.
     ///
-    /// - `normals`: as [`Receiver::normal`](super::Receiver::normal); may be empty unless [`Lights::ask_for_normals`]
+    /// - `normals`: as [`Receiver::normal`](super::Receiver::normal); may be empty unless [`LightSampler::asks_for_normals`]
     /// - `choice`, `u`: one number a point, uniform in \[0, 1), independent
     ///
     /// # Panics
@@ -154,9 +154,10 @@ impl Lights {
         u: [&[f32]; 2],
         samples: &mut LightSamples,
     ) {
+        let lights = self.lights;
         let count = from.p.len();
         samples.resize(count);
-        let ways = &self.together.ways;
+        let ways = &lights.together.ways;
         samples.chosen.resize_with(ways.len(), Vec::new);
         samples.chosen.iter_mut().for_each(Vec::clear);
         let mut drawn = std::mem::take(&mut samples.drawn);
@@ -168,10 +169,10 @@ impl Lights {
                 continue;
             }
             samples.light[i] = light;
-            let way = self.together.of[light as usize];
+            let way = lights.together.of[light as usize];
             if way == SINGLY {
                 let place = (from.p.get(i), from.error[i]);
-                self.sample_singly(
+                lights.sample_singly(
                     guide,
                     (light, drawn.primitive),
                     place,
@@ -194,22 +195,24 @@ impl Lights {
             if !chosen.is_empty() {
                 match *way {
                     Way::Environment => {
-                        self.sample_environment(guide, &chosen, from, u, samples);
+                        lights.sample_environment(guide, &chosen, from, u, samples);
                     }
                     Way::Sphere(one) => {
                         let which = (&chosen[..], one.is_some());
-                        self.sample_surfaces::<OfSphere>(guide, which, from, u, samples);
+                        lights.sample_surfaces::<OfSphere>(guide, which, from, u, samples);
                     }
                     Way::Rectangle(one) => {
                         let which = (&chosen[..], one.is_some());
-                        self.sample_surfaces::<OfRectangle>(guide, which, from, u, samples);
+                        lights.sample_surfaces::<OfRectangle>(guide, which, from, u, samples);
                     }
                 }
             }
             samples.chosen[k] = chosen;
         }
     }
+}
 
+impl Lights {
     #[allow(
         clippy::too_many_arguments,
         reason = "a point with all that is known of it"

@@ -12,19 +12,21 @@ use std::f64::consts::PI;
 
 /// How one of a scene's lights is chosen for a point.
 ///
-/// Among things of power Φᵢ one is chosen with the probability pᵢ = ½ Φᵢ/ΣΦ + ½ 1/n. Power alone would starve a small lamp beside the
+/// By a tree: among things of power Φᵢ one is chosen with the probability pᵢ = ½ Φᵢ/ΣΦ + ½ 1/n. Power alone would starve a small lamp beside the
 /// subject of a scene under a large sky; the uniform half bounds the variance of any light at twice what sampling by power, and at twice
 /// what sampling evenly, would give. Power of a light that is infinitely far away is what passes through the bounding sphere of the scene,
 /// of radius R: π R² E for parallel light, π R² ∫L dω for an environment.
 ///
 /// Of several lights that have a place the one is chosen by a tree, which knows the point; together they are one thing beside those that
 /// are infinitely far away.
+///
+/// By power: pᵢ = Φᵢ/ΣΦ. Evenly: pᵢ = 1/n.
 #[derive(Debug)]
 pub(super) enum Choice {
     /// There is nothing to choose from.
     None,
-    /// One of the lights.
-    ByPower(Discrete),
+    /// One of the lights, half by power and half evenly: too few have a place to make a tree.
+    Mixed(Discrete),
     /// The tree, or one of the others.
     Tree {
         tree: LightTree,
@@ -34,6 +36,14 @@ pub(super) enum Choice {
         infinite: Vec<u32>,
         /// Whether each light is chosen triangle by triangle.
         parts: Vec<bool>,
+    },
+    /// One of the lights, by power alone.
+    Power(Discrete),
+    /// One of the lights that shine.
+    Uniform {
+        shining: Vec<u32>,
+        /// For each light 1 over the number of those that shine, or 0.
+        probabilities: Vec<f32>,
     },
 }
 
@@ -64,6 +74,26 @@ impl Chosen {
         }
     }
 
+    #[inline(always)]
+    fn by_power(lights: &Discrete, u: f64) -> Self {
+        Self::whole(lights.sample_fine(u))
+    }
+
+    /// One of `shining`, each of which has the same probability.
+    #[inline(always)]
+    fn uniform(shining: &[u32], probabilities: &[f32], u: f64) -> Self {
+        let scaled = u * shining.len() as f64;
+        // A product that is rounded up is the end of the last.
+        let k = (scaled as u32).min(shining.len() as u32 - 1);
+        let light = shining[k as usize];
+        Self {
+            light,
+            primitive: WHOLE,
+            probability: probabilities[light as usize],
+            rest: ((scaled - f64::from(k)) as f32).min(BELOW_ONE),
+        }
+    }
+
     /// By a tree that was chosen with this probability.
     #[inline(always)]
     fn below(probability: f32, found: &Found) -> Self {
@@ -77,18 +107,37 @@ impl Chosen {
 }
 
 impl Choice {
-    pub fn new(geometry: &Geometry, lights: &[Light], emitters: &[Option<Emitter>]) -> Self {
+    /// All that there are, each in the place of its [`LightChoice`](super::LightChoice).
+    pub fn each(geometry: &Geometry, lights: &[Light], emitters: &[Option<Emitter>]) -> [Self; 3] {
         let powers: Vec<f64> = lights.iter().map(|light| power(light, geometry)).collect();
-        match LightTree::new(geometry, lights, emitters, &powers) {
+        let tree = match LightTree::new(geometry, lights, emitters, &powers) {
             Some(tree) => Self::with_tree(tree, lights, &powers),
-            None => Self::by_power(geometry, lights),
-        }
+            None => Discrete::new(&probabilities(&powers)).map_or(Self::None, Self::Mixed),
+        };
+        [tree, Self::by_power(&powers), Self::uniform(&powers)]
     }
 
-    /// Without a tree.
-    pub fn by_power(geometry: &Geometry, lights: &[Light]) -> Self {
-        let powers: Vec<f64> = lights.iter().map(|light| power(light, geometry)).collect();
-        Discrete::new(&probabilities(&powers)).map_or(Self::None, Self::ByPower)
+    /// By power alone.
+    fn by_power(powers: &[f64]) -> Self {
+        // There are more than a table may have.
+        Discrete::new(&shares(powers)).map_or_else(|_| Self::uniform(powers), Self::Power)
+    }
+
+    fn uniform(powers: &[f64]) -> Self {
+        let shining: Vec<u32> = (0..)
+            .zip(powers)
+            .filter(|&(_, &p)| shines(p))
+            .map(|(light, _)| light)
+            .collect();
+        if shining.is_empty() {
+            return Self::None;
+        }
+        let each = (1.0 / shining.len() as f64) as f32;
+        let probability = |&p: &f64| if shines(p) { each } else { 0.0 };
+        Self::Uniform {
+            shining,
+            probabilities: powers.iter().map(probability).collect(),
+        }
     }
 
     fn with_tree(tree: LightTree, lights: &[Light], powers: &[f64]) -> Self {
@@ -150,7 +199,12 @@ impl Choice {
     fn choose_here(&self, at: &Receiver, u: f32) -> Option<Chosen> {
         match self {
             Self::None => None,
-            Self::ByPower(lights) => Some(Chosen::whole(lights.sample(u))),
+            Self::Mixed(lights) => Some(Chosen::whole(lights.sample(u))),
+            Self::Power(lights) => Some(Chosen::by_power(lights, finer(u, at.p))),
+            Self::Uniform {
+                shining,
+                probabilities,
+            } => Some(Chosen::uniform(shining, probabilities, finer(u, at.p))),
             Self::Tree {
                 tree,
                 branch,
@@ -207,7 +261,8 @@ impl Choice {
     pub fn probability_of_infinite(&self, light: u32) -> f32 {
         match self {
             Self::None => 0.0,
-            Self::ByPower(lights) => lights.probability(light as usize),
+            Self::Mixed(lights) | Self::Power(lights) => lights.probability(light as usize),
+            Self::Uniform { probabilities, .. } => probabilities[light as usize],
             Self::Tree {
                 branch, infinite, ..
             } => {
@@ -284,14 +339,28 @@ impl Kernel for ChooseMany<'_> {
         match self.choice {
             Choice::None => {}
             // There is but one, and nothing of the number is used up.
-            Choice::ByPower(lights) if lights.len() == 1 => {
+            Choice::Mixed(lights) if lights.len() == 1 => {
                 for (chosen, &u) in self.chosen.iter_mut().zip(self.u) {
                     *chosen = Chosen::whole((0, 1.0, u));
                 }
             }
-            Choice::ByPower(lights) => {
+            Choice::Mixed(lights) => {
                 for (chosen, &u) in self.chosen.iter_mut().zip(self.u) {
                     *chosen = Chosen::whole(lights.sample(u));
+                }
+            }
+            Choice::Power(lights) => {
+                for (i, (chosen, &u)) in self.chosen.iter_mut().zip(self.u).enumerate() {
+                    *chosen = Chosen::by_power(lights, finer(u, self.from.p.get(i)));
+                }
+            }
+            Choice::Uniform {
+                shining,
+                probabilities,
+            } => {
+                for (i, (chosen, &u)) in self.chosen.iter_mut().zip(self.u).enumerate() {
+                    let u = finer(u, self.from.p.get(i));
+                    *chosen = Chosen::uniform(shining, probabilities, u);
                 }
             }
             Choice::Tree {
@@ -385,25 +454,42 @@ fn spherical_integral(e: &Environment) -> f64 {
     sum / f64::from(SIDE * SIDE)
 }
 
+/// Whether a light of this power is one to choose.
+fn shines(power: f64) -> bool {
+    power > 0.0 && power.is_finite()
+}
+
+/// Of the powers of lights that shine the largest, and what they are together, relative to it.
+fn largest_and_total(powers: &[f64]) -> (f64, f64) {
+    let shining = || powers.iter().copied().filter(|&p| shines(p));
+    let largest = shining().fold(0.0, f64::max);
+    (largest, shining().map(|p| p / largest).sum())
+}
+
 /// ½ Φᵢ/ΣΦ + ½ 1/n over the n lights with power; 0 for the others.
 pub(super) fn probabilities(powers: &[f64]) -> Vec<f32> {
-    let shines = |p: f64| p > 0.0 && p.is_finite();
-    let largest = powers
-        .iter()
-        .copied()
-        .filter(|&p| shines(p))
-        .fold(0.0, f64::max);
-    let total: f64 = powers
-        .iter()
-        .filter(|&&p| shines(p))
-        .map(|p| p / largest)
-        .sum();
+    let (largest, total) = largest_and_total(powers);
     let count = powers.iter().filter(|&&p| shines(p)).count() as f64;
     powers
         .iter()
         .map(|&p| {
             if shines(p) {
                 (0.5 * (p / largest) / total + 0.5 / count) as f32
+            } else {
+                0.0
+            }
+        })
+        .collect()
+}
+
+/// Φᵢ/ΣΦ over the lights with power, and no less than the smallest number there is, so that none of them is impossible; 0 for the others.
+pub(super) fn shares(powers: &[f64]) -> Vec<f32> {
+    let (largest, total) = largest_and_total(powers);
+    powers
+        .iter()
+        .map(|&p| {
+            if shines(p) {
+                (((p / largest) / total) as f32).max(f32::MIN_POSITIVE)
             } else {
                 0.0
             }

@@ -2,19 +2,21 @@
 //!
 //! The reflection equation has two forms. For point-like lights it is a sum, Lr = Σᵢ f Eᵢ with Eᵢ = Iᵢ cosθᵢ / rᵢ²; for
 //! extended ones an integral, Lr = ∫ Li f cosθ dω. [`Lights`] serves both: [`Lights::each`] enumerates the lights for sums,
-//! [`Lights::sample`] chooses one and a direction for the integral, with the exact density per solid angle.
+//! [`LightSampler::sample`] chooses one and a direction for the integral, with the exact density per solid angle.
 
 mod batch;
 mod choice;
 mod emitter;
 pub(crate) mod group;
 mod punctual;
+mod sampler;
 mod select;
 mod tree;
 
 pub use batch::LightSamples;
 pub use group::NO_GROUP;
 pub use punctual::SpotCone;
+pub use sampler::{LightChoice, LightSampler};
 pub use select::{LightRef, Lights};
 
 use crate::SurfacePoint;

@@ -5,25 +5,24 @@ use super::choice::{Choice, flux};
 use super::emitter::Emitter;
 use super::group::{Grouped, LightGroups};
 use super::punctual::illuminate;
-use super::{Light, LightSample, LightTarget, Receiver, WHOLE};
+use super::sampler::{LightChoice, LightSampler};
+use super::{Light, LightSample, LightTarget, WHOLE};
 use crate::{Geometry, Material, SurfacePoint};
 use gonio_env::{Environment, Guide};
 use gonio_num::Vec3;
 use std::sync::Arc;
 
-/// All lights of a scene.
-///
-/// One is chosen for a point: several that have a place by a tree of bounds on what they may send to it, the others with the same
-/// probabilities everywhere, half by their power and half evenly.
+/// All lights of a scene. [`Lights::by`] says how one of them is chosen for a point.
 #[derive(Debug)]
 pub struct Lights {
     pub(super) lights: Vec<Light>,
     /// One for each light that is a surface.
     pub(super) emitters: Vec<Option<Emitter>>,
-    pub(super) choice: Choice,
+    /// In the places of [`LightChoice`].
+    choices: [Choice; 3],
     pub(super) together: Together,
     environment: Option<u32>,
-    geometry: Arc<Geometry>,
+    pub(super) geometry: Arc<Geometry>,
     /// As the scene says it, for another environment.
     given_groups: LightGroups,
     groups: Grouped,
@@ -32,7 +31,7 @@ pub struct Lights {
 /// One light of a scene, for sums over all lights.
 #[derive(Debug, Clone, Copy)]
 pub struct LightRef<'a> {
-    lights: &'a Lights,
+    pub(super) lights: &'a Lights,
     pub(super) index: u32,
 }
 
@@ -79,13 +78,13 @@ impl Lights {
             group_of.push(given_groups.environment.as_deref());
             lights.len() as u32 - 1
         });
-        let choice = Choice::new(&geometry, &lights, &emitters);
+        let choices = Choice::each(&geometry, &lights, &emitters);
         let together = Together::new(&lights, &emitters);
         let groups = Grouped::new(group_of.into_iter());
         Self {
             lights,
             emitters,
-            choice,
+            choices,
             together,
             environment,
             geometry,
@@ -120,7 +119,7 @@ impl Lights {
 
     /// Whether there is no light that shines.
     pub fn is_empty(&self) -> bool {
-        self.choice.is_none()
+        self.choices[0].is_none()
     }
 
     /// The lights in their order.
@@ -144,68 +143,13 @@ impl Lights {
         })
     }
 
-    /// Chooses a light and a direction towards it.
-    ///
-    /// - `u_select`, `u`: uniform in \[0, 1), independent
-    ///
-    /// Nothing if there is no light, or if none comes from the direction chosen; the estimate is then zero.
-    pub fn sample(&self, from: &Receiver, u_select: f32, u: [f32; 2]) -> Option<LightSample> {
-        self.sample_by(Guide::Luminance, from, u_select, u)
-    }
-
-    /// As [`Lights::sample`], with the environment sampled by `guide`.
+    /// The lights, of which one is chosen in this way.
     #[inline]
-    pub fn sample_by(
-        &self,
-        guide: Guide,
-        from: &Receiver,
-        u_select: f32,
-        u: [f32; 2],
-    ) -> Option<LightSample> {
-        let chosen = self.choice.choose(from, u_select)?;
-        let which = (chosen.light, chosen.primitive);
-        let mut sample = self.sample_one(guide, which, (from.p, from.error), chosen.rest, u)?;
-        sample.pdf *= chosen.probability;
-        (sample.pdf > 0.0).then_some(sample)
-    }
-
-    /// Chooses a light: which, and with what probability. Nothing if none shines, or if none may light the point.
-    #[inline]
-    pub fn choose(&self, from: &Receiver, u_select: f32) -> Option<(LightRef<'_>, f32)> {
-        let chosen = self.choice.choose(from, u_select)?;
-        let (lights, index) = (self, chosen.light);
-        Some((LightRef { lights, index }, chosen.probability))
-    }
-
-    /// Leaves the tree out.
-    #[cfg(test)]
-    pub(super) fn choose_by_power(&mut self) {
-        self.choice = Choice::by_power(&self.geometry, &self.lights);
-    }
-
-    /// Whether it matters for the choice of a light which way a point faces.
-    pub fn ask_for_normals(&self) -> bool {
-        self.choice.asks_for_normals()
-    }
-
-    /// The density \[sr⁻¹] with which [`Lights::sample`] at `from` chooses the direction `wi` by way of the emissive instance
-    /// that `hit` lies on; 0 if that shines not, or not towards `from`.
-    pub fn pdf_area(&self, from: &Receiver, hit: &SurfacePoint, wi: Vec3<f32>) -> f32 {
-        let instance = self.geometry.instances().get(hit.instance as usize);
-        let Some(index) = instance.and_then(|i| i.area_light) else {
-            return 0.0;
-        };
-        let Some(Some(emitter)) = self.emitters.get(index as usize) else {
-            return 0.0;
-        };
-        let dark = emitter.radiance(hit, wi).iter().all(|&r| r <= 0.0);
-        if dark {
-            return 0.0;
+    pub fn by(&self, choice: LightChoice) -> LightSampler<'_> {
+        LightSampler {
+            lights: self,
+            choice: &self.choices[choice as usize],
         }
-        let whole = !self.choice.parts(index);
-        let primitive = if whole { WHOLE } else { hit.primitive };
-        let probability = self.choice.probability(from, index, primitive);
-        probability * emitter.pdf(&self.geometry, from.p, hit, whole)
     }
 
     /// The radiant flux \[W] that a light emits, in each channel: 4π I of a point light, ∫ I dω of a spot light's cone, π A L of
@@ -213,44 +157,6 @@ impl Lights {
     pub fn power(&self, light: u32) -> Option<[f64; 3]> {
         let (rgb, factor) = flux(self.lights.get(light as usize)?, &self.geometry)?;
         Some(rgb.map(|c| factor * f64::from(c)))
-    }
-
-    /// The density \[sr⁻¹] with which [`Lights::sample`] at `from` chooses the direction `wi` by way of the environment.
-    pub fn pdf_environment(&self, from: Vec3<f32>, wi: Vec3<f32>) -> f32 {
-        let probability = self.environment_probability();
-        self.environment()
-            .map_or(0.0, |e| probability * e.pdf_from(from, wi))
-    }
-
-    /// The environment's radiance \[W m⁻² sr⁻¹] from `wi` at `from`, together with [`Lights::pdf_environment`], for less than both
-    /// cost; zeros without an environment.
-    pub fn environment_radiance_and_pdf(&self, from: Vec3<f32>, wi: Vec3<f32>) -> ([f32; 3], f32) {
-        self.environment_radiance_and_pdf_by(Guide::Luminance, from, wi)
-    }
-
-    /// As [`Lights::environment_radiance_and_pdf`], with the density of [`Lights::sample_by`].
-    #[inline]
-    pub fn environment_radiance_and_pdf_by(
-        &self,
-        guide: Guide,
-        from: Vec3<f32>,
-        wi: Vec3<f32>,
-    ) -> ([f32; 3], f32) {
-        self.environment().map_or(([0.0; 3], 0.0), |e| {
-            let (radiance, pdf) = e.radiance_and_pdf_from_by(guide, from, wi);
-            (radiance, self.environment_probability() * pdf)
-        })
-    }
-
-    /// The probability with which the environment is chosen, at any point; 0 without one.
-    pub fn environment_probability(&self) -> f32 {
-        self.environment
-            .map_or(0.0, |index| self.choice.probability_of_infinite(index))
-    }
-
-    /// The probability with which a light is chosen at a point. Of a mesh that is chosen triangle by triangle, their sum: that takes time.
-    pub fn probability(&self, from: &Receiver, light: u32) -> f32 {
-        self.choice.probability_of_light(from, light)
     }
 
     /// A direction towards a given light, or triangle of it; its pdf is without the probability of the choice.

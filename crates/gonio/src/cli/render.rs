@@ -19,7 +19,9 @@ use super::terminal::{note, print, print_json, warn};
 use checkpoint::{Checkpoint, CheckpointArguments};
 use gonio_env::Candidates;
 use gonio_radiometry::sequence::SamplerKind;
-use gonio_render::integrator::{Direct, EnvironmentSampling, Path as PathTracer, Roulette};
+use gonio_render::integrator::{
+    Direct, EnvironmentSampling, LightChoice, Path as PathTracer, Roulette,
+};
 use gonio_render::part::Label;
 use gonio_render::{
     Exposure, Identity, Integrator, Kept, Names, PixelFilter, Rejected, RenderOptions, Screen,
@@ -147,6 +149,10 @@ pub(super) struct Arguments {
     /// for the rays that it takes, which a small picture tells before (efficiency)
     #[arg(long, value_enum, value_name = "NAME", default_value_t = RouletteName::Throughput, help_heading = "Method")]
     roulette: RouletteName,
+    /// How one of the lights is chosen at each reflection of the path integrator: by what it may send there (tree), by its power, or each with the same
+    /// probability (uniform)
+    #[arg(long, value_enum, value_name = "NAME", default_value_t = LightChoiceName::Tree, help_heading = "Method")]
+    light_choice: LightChoiceName,
     /// Light samples at the first surface of each camera ray; powers of two are stratified best
     #[arg(long, value_name = "N", default_value_t = PathTracer::default().light_samples, value_parser = parse::whole(1, PathTracer::MOST), allow_hyphen_values = true, help_heading = "Method")]
     light_samples: u32,
@@ -192,6 +198,13 @@ enum IntegratorName {
 enum RouletteName {
     Throughput,
     Efficiency,
+}
+
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum LightChoiceName {
+    Tree,
+    Power,
+    Uniform,
 }
 
 #[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
@@ -492,6 +505,11 @@ fn options(arguments: &Arguments, scene: &Scene, range: &Range<u32>) -> RenderOp
                 max_bounces: arguments.max_bounces,
                 environment: environment_sampling(arguments),
                 roulette_after: arguments.roulette_after,
+                light_choice: match arguments.light_choice {
+                    LightChoiceName::Tree => LightChoice::Tree,
+                    LightChoiceName::Power => LightChoice::Power,
+                    LightChoiceName::Uniform => LightChoice::Uniform,
+                },
                 light_samples: arguments.light_samples,
                 light_candidates: arguments.light_candidates,
                 splitting: arguments.splitting,

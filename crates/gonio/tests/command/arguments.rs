@@ -25,6 +25,10 @@ fn slips_of_the_pen_are_understood() {
         ),
         (vec!["render", "--filter", "bx"], "did you mean 'box'?"),
         (
+            vec!["render", "--light-choice", "unifrm"],
+            "did you mean 'uniform'?",
+        ),
+        (
             vec!["render", "--sampler", "sobel"],
             "did you mean 'sobol'?",
         ),

@@ -11,7 +11,7 @@ use gonio_brdf::{Brdf, batch};
 use gonio_env::Guide;
 use gonio_num::dispatch::{Kernel, dispatch};
 use gonio_num::{Vectors, vectors::whole_steps};
-use gonio_scene::{LightSamples, Scene};
+use gonio_scene::{LightSampler, LightSamples, Scene};
 
 /// One light sample a point, and what is reflected of it.
 #[derive(Debug, Default)]
@@ -49,7 +49,13 @@ struct Resampled {
 
 impl Direct {
     /// Draws one light and a direction for each point.
-    pub fn draw(&mut self, scene: &Scene, guide: Guide, vertices: &Vertices<'_>, bounce: u32) {
+    pub fn draw(
+        &mut self,
+        lights: LightSampler<'_>,
+        guide: Guide,
+        vertices: &Vertices<'_>,
+        bounce: u32,
+    ) {
         let count = vertices.len();
         for column in [&mut self.choice].into_iter().chain(&mut self.u) {
             column.resize(whole_steps(count), 0.0);
@@ -59,7 +65,7 @@ impl Direct {
         vertices.streams.draw(at, [u, v, &mut self.choice]);
         let u = [&self.u[0][..], &self.u[1]];
         let (from, normals) = (&vertices.surfaces, &vertices.receiving);
-        (scene.lights).sample_many(guide, from, normals, &self.choice, u, &mut self.light);
+        lights.sample_many(guide, from, normals, &self.choice, u, &mut self.light);
     }
 
     /// Evaluates the reflection functions.

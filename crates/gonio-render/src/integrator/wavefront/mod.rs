@@ -13,10 +13,7 @@ mod surface;
 
 use super::shares::Split;
 use super::worth::{Judge, Worth};
-use super::{
-    EnvironmentSampling, Integrator, Path, RayCounts, dimension, light_at, power_heuristic,
-    product, scaled, sum,
-};
+use super::{EnvironmentSampling, Integrator, Path, RayCounts, dimension, light_at, product, sum};
 use crate::film::{FilmSample, FirstSurface};
 use direct::Direct;
 pub(crate) use gathered::Gathered;
@@ -24,7 +21,7 @@ use gonio_brdf::Model;
 use gonio_env::{EnvSamples, Guide};
 use gonio_num::Vectors;
 use gonio_radiometry::sequence::{SampleStreams, SamplerKind};
-use gonio_scene::{Hit, Material, Scene, SurfacePoint, Surfaces};
+use gonio_scene::{Hit, LightSampler, Material, Scene, SurfacePoint, Surfaces};
 use paths::Paths;
 use scatter::Scatter;
 use surface::Vertices;
@@ -150,6 +147,11 @@ impl<'a> Plan<'a> {
     #[inline(always)]
     fn met(&self, hit: &Hit) -> Met {
         self.met[(hit.instance as usize).min(self.met.len() - 1)]
+    }
+
+    /// The lights, as one of them is chosen.
+    fn lights(&self) -> LightSampler<'a> {
+        self.scene.lights.by(self.path.light_choice)
     }
 
     /// Samples in a wave.
@@ -313,7 +315,7 @@ impl<'a> Wavefront<'a> {
                     self.vertices.streams.gather(&self.going, &self.ids);
                 }
                 let direct = &mut self.direct;
-                direct.draw(plan.scene, plan.guide, &self.vertices, segment);
+                direct.draw(plan.lights(), plan.guide, &self.vertices, segment);
                 direct.reflect(&self.vertices, strategies);
                 if strategies.candidates > 1 {
                     direct.consider(candidate, &self.vertices, segment);
@@ -455,9 +457,9 @@ impl<'a> Wavefront<'a> {
         } else if radiance != [0.0; 3] {
             let from = self.vertices.receiver(paths.vertex[i] as usize);
             let strategies = self.plan.path.strategies(segment - 1, false);
-            let density = scene.lights.pdf_area(&from, point, direction);
+            let density = self.plan.lights().pdf_area(&from, point, direction);
             let density = strategies.of_lights(density);
-            let arrived = weighted(paths, i, radiance, density);
+            let arrived = paths.weighted(i, radiance, density);
             light.add(paths.id[i], light_at(scene, point), segment, arrived);
         }
     }
@@ -487,12 +489,12 @@ impl<'a> Wavefront<'a> {
             self.from.set(i, self.vertices.surfaces.p.get(vertex));
         }
         environment.look_up_many(self.plan.guide, &self.from, around);
-        let probability = lights.environment_probability();
+        let probability = self.plan.lights().environment_probability();
         let strategies = self.plan.path.strategies(segment - 1, false);
         for (i, &k) in self.missed.iter().enumerate() {
             let radiance = [0, 1, 2].map(|c| around.radiance[c][i]);
             let density = strategies.of_lights(probability * around.pdf[i]);
-            let arrived = weighted(paths, k as usize, radiance, density);
+            let arrived = paths.weighted(k as usize, radiance, density);
             let from = lights.environment_index();
             light.add(paths.id[k as usize], from, segment, arrived);
         }
@@ -586,14 +588,6 @@ impl<'a> Wavefront<'a> {
             }
         }
     }
-}
-
-/// Light that path `i` met, with the weight against a light sample of this density.
-#[inline(always)]
-fn weighted(paths: &Paths, i: usize, radiance: [f32; 3], density: f32) -> [f32; 3] {
-    // From ∞ the weight is 1, whatever the other density.
-    let weight = power_heuristic(paths.pdf[i], density);
-    scaled(product(paths.throughput(i), radiance), weight)
 }
 
 /// One of several paths that a point goes on with.

@@ -1,5 +1,6 @@
 //! [`Paths`], the paths of a wave between two surfaces.
 
+use crate::integrator::{power_heuristic, product, scaled};
 use gonio_num::Vectors;
 use gonio_scene::Ray;
 
@@ -69,6 +70,14 @@ impl Paths {
 
     pub fn throughput(&self, i: usize) -> [f32; 3] {
         [0, 1, 2].map(|k| self.throughput[k][i])
+    }
+
+    /// Light that path `i` met, with the weight against a light sample of this density.
+    #[inline(always)]
+    pub fn weighted(&self, i: usize, radiance: [f32; 3], density: f32) -> [f32; 3] {
+        // From ∞ the weight is 1, whatever the other density.
+        let weight = power_heuristic(self.pdf[i], density);
+        scaled(product(self.throughput(i), radiance), weight)
     }
 
     /// 1 where nothing scales.

@@ -134,7 +134,7 @@ impl<'a> Vertices<'a> {
     }
 
     fn find_receiving_sides(&mut self) {
-        let asked = self.plan.scene.lights.ask_for_normals();
+        let asked = self.plan.lights().asks_for_normals();
         let mut receiving = std::mem::take(&mut self.receiving);
         receiving.resize(if asked { self.len() } else { 0 });
         if asked {

@@ -14,7 +14,7 @@ mod cone;
 mod many;
 mod source;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use super::emitter::Emitter;
 use super::{Light, Receiver};

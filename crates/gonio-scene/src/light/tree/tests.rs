@@ -1,6 +1,6 @@
 use super::*;
 use crate::light::choice::Choice;
-use crate::light::{LightSamples, LightTarget, SpotCone, WHOLE};
+use crate::light::{LightChoice, LightSamples, LightTarget, SpotCone, WHOLE};
 use crate::{Material, Ray, Scene, SceneBuilder, Shape, Surfaces, TriangleMesh};
 use gonio_brdf::ModelSpec;
 use gonio_env::{Environment, Guide};
@@ -18,7 +18,7 @@ fn direction(rng: &mut Rng) -> Vec3<f32> {
 }
 
 /// Anywhere around the lights, among them as well; facing some way, or all ways.
-fn receiver(rng: &mut Rng) -> Receiver {
+pub(in crate::light) fn receiver(rng: &mut Rng) -> Receiver {
     let faces = rng.next_f32() < 0.8;
     let normal = direction(rng);
     Receiver {
@@ -29,7 +29,7 @@ fn receiver(rng: &mut Rng) -> Receiver {
 }
 
 /// Lights of every kind, of very different sizes, radiances and orientations, a few of them one beside the other.
-fn everything(name: &str, count: usize) -> Scene {
+pub(in crate::light) fn everything(name: &str, count: usize) -> Scene {
     let mut rng = Rng::from_name(name);
     let mut builder = SceneBuilder::new(name);
     let fin = TriangleMesh {
@@ -97,7 +97,7 @@ fn everything(name: &str, count: usize) -> Scene {
 }
 
 fn tree_of(scene: &Scene) -> &LightTree {
-    match &scene.lights.choice {
+    match scene.lights.by(LightChoice::Tree).choice {
         Choice::Tree { tree, .. } => tree,
         other => panic!("no tree: {other:?}"),
     }
@@ -125,7 +125,7 @@ fn probabilities_sum_to_one() {
             let missed = (tree.leaves.len() + 1) as f64 / f64::from(grid);
             assert!((1.0 - total - share).abs() < missed, "{total} {share}");
             let by_light: f64 = (0..scene.lights.len() as u32)
-                .map(|l| f64::from(scene.lights.probability(&at, l)))
+                .map(|l| f64::from(scene.lights.by(LightChoice::Tree).probability(&at, l)))
                 .sum();
             assert!(by_light < 1.0 + 1e-5);
         }
@@ -220,11 +220,18 @@ fn no_light_that_arrives_is_impossible() {
 }
 
 /// Mean and variance of the estimate of the irradiance, red and green added, from the side that a point faces.
-fn irradiance(scene: &Scene, at: &Receiver, rng: &mut Rng, count: u32) -> (f64, f64) {
+fn irradiance(
+    lights: (&Scene, LightChoice),
+    at: &Receiver,
+    rng: &mut Rng,
+    count: u32,
+) -> (f64, f64) {
+    let (scene, choice) = lights;
+    let lights = scene.lights.by(choice);
     let (mut sum, mut squares) = (0.0, 0.0);
     for _ in 0..count {
         let (select, u) = (rng.next_f32(), [rng.next_f32(), rng.next_f32()]);
-        let value = scene.lights.sample(at, select, u).map_or(0.0, |s| {
+        let value = lights.sample(at, select, u).map_or(0.0, |s| {
             let end = match s.target {
                 LightTarget::Point(p) => (p - at.p).length() * 0.999,
                 LightTarget::Infinite => f32::INFINITY,
@@ -247,14 +254,15 @@ fn irradiance(scene: &Scene, at: &Receiver, rng: &mut Rng, count: u32) -> (f64, 
     (mean, (squares / n - mean * mean).max(0.0))
 }
 
-/// The tree against the choice by power, whose expectation is the same: z of the difference at many points, within 4.5 (7e-6 a test, of
-/// 40), and less variance in the geometric mean. The controls: 20 % more isn't the same at most points.
+/// The tree against the uniform choice, whose expectation is the same: z of the difference at many points, within 4.5 (7e-6 a test, of
+/// 40), and less variance in the geometric mean. Of 120 lights one has a hundredth of the samples, which deviate by some ten times the mean: by 4 % of it
+/// in 60,000. The controls: half as much again isn't the same at most points.
 #[test]
-fn the_tree_has_the_expectation_of_the_choice_by_power_and_less_variance() {
-    let with_tree = everything("the expectation", 120);
-    let mut by_power = everything("the expectation", 120);
-    by_power.lights.choose_by_power();
-    assert!(!by_power.lights.ask_for_normals() && with_tree.lights.ask_for_normals());
+fn the_tree_has_the_expectation_of_the_uniform_choice_and_less_variance() {
+    let scene = everything("the expectation", 120);
+    let (tree, uniform) = (LightChoice::Tree, LightChoice::Uniform);
+    assert!(scene.lights.by(tree).asks_for_normals());
+    assert!(!scene.lights.by(uniform).asks_for_normals());
     let mut rng = Rng::from_name("the tree has the expectation");
     let (mut told_apart, mut log_ratio, mut points) = (0, 0.0, 0);
     while points < 40 {
@@ -262,20 +270,20 @@ fn the_tree_has_the_expectation_of_the_choice_by_power_and_less_variance() {
             normal: direction(&mut rng),
             ..receiver(&mut rng)
         };
-        let count = 20_000;
-        let (a, va) = irradiance(&with_tree, &at, &mut rng, count);
-        let (b, vb) = irradiance(&by_power, &at, &mut rng, count);
+        let count = 60_000;
+        let (a, va) = irradiance((&scene, tree), &at, &mut rng, count);
+        let (b, vb) = irradiance((&scene, uniform), &at, &mut rng, count);
         if vb == 0.0 {
             continue;
         }
         points += 1;
         let error = ((va + vb) / f64::from(count)).sqrt();
         assert!((a - b).abs() < 4.5 * error, "{a} {b} ± {error} at {at:?}");
-        told_apart += u32::from((1.2 * a - b).abs() > 4.5 * error);
+        told_apart += u32::from((1.5 * a - b).abs() > 4.5 * error);
         log_ratio += Real::ln(va / vb);
     }
     let ratio = Real::exp(log_ratio / f64::from(points));
-    println!("variance with the tree / by power: {ratio:.3}");
+    println!("variance with the tree / uniform: {ratio:.3}");
     assert!(told_apart > 20, "{told_apart}");
     assert!(ratio < 0.5, "{ratio}");
 }
@@ -312,9 +320,20 @@ fn lights_that_nothing_tells_apart_are_still_a_tree() {
 /// Any number of points together find what each finds alone: lights, densities, directions and radiances, to the bit.
 #[test]
 fn many_points_sample_what_each_samples() {
-    for (lights, points) in [(900, 1000), (900, 1), (12, 500)] {
+    let (tree, power, uniform) = (LightChoice::Tree, LightChoice::Power, LightChoice::Uniform);
+    for (choice_of_light, lights, points) in [
+        (tree, 900, 1000),
+        (tree, 900, 1),
+        (tree, 12, 500),
+        (power, 900, 1000),
+        (power, 12, 500),
+        (uniform, 900, 1000),
+        (uniform, 900, 1),
+        (uniform, 12, 500),
+    ] {
         let mut rng = Rng::from_name("many_points_sample_what_each_samples");
         let scene = everything("many_points_sample_what_each_samples", lights);
+        let lights = scene.lights.by(choice_of_light);
         let (mut from, mut normals) = (Surfaces::default(), Vectors::default());
         from.resize(points);
         normals.resize(points);
@@ -330,11 +349,11 @@ fn many_points_sample_what_each_samples() {
         // Twice: what the first call leaves behind has no part in the second.
         for _ in 0..2 {
             let guide = Guide::Luminance;
-            (scene.lights).sample_many(guide, &from, &normals, &choice, [&u, &v], &mut found);
+            lights.sample_many(guide, &from, &normals, &choice, [&u, &v], &mut found);
         }
         let mut carrying = 0;
         for (i, at) in receivers.iter().enumerate() {
-            let one = scene.lights.sample(at, choice[i], [u[i], v[i]]);
+            let one = lights.sample(at, choice[i], [u[i], v[i]]);
             let Some(one) = one else {
                 assert_eq!(found.pdf[i], 0.0, "{i}");
                 continue;
