@@ -4,7 +4,8 @@
 #![allow(clippy::needless_range_loop)]
 
 use crate::environment::{Picture, Source};
-use crate::sampling::{Guide, SphereTable};
+use crate::lookup::Taps;
+use crate::sampling::{Begun, Guide, Inversion, SphereTable};
 use crate::{Environment, Layout};
 use gonio_num::dispatch::{Kernel, dispatch};
 use gonio_num::lanes::Lanes;
@@ -66,12 +67,19 @@ impl Environment {
         let count = from.len();
         samples.resize(count);
         if let Some((picture, table)) = self.on_lanes(guide) {
-            dispatch(Sample {
-                environment: self,
-                table,
-                u: u.map(|u| &u[..count]),
-                samples,
-            });
+            if let Some(inversion) = table.inversion() {
+                dispatch(Sample {
+                    environment: self,
+                    inversion,
+                    u: u.map(|u| &u[..count]),
+                    samples,
+                });
+            } else {
+                for i in 0..count {
+                    let d = table.sample([u[0][i], u[1][i]]);
+                    samples.wi.set(i, self.to_world(d));
+                }
+            }
             self.look_up(guide, picture, samples);
             return;
         }
@@ -139,9 +147,12 @@ impl Environment {
     }
 }
 
+/// Steps of lanes that wait for memory together.
+const STEPS: usize = 4;
+
 struct Sample<'a> {
     environment: &'a Environment,
-    table: &'a SphereTable,
+    inversion: Inversion<'a>,
     u: [&'a [f32]; 2],
     samples: &'a mut EnvSamples,
 }
@@ -150,15 +161,31 @@ impl Kernel for Sample<'_> {
     type Output = ();
     #[inline(always)]
     fn run<const L: usize>(self) {
-        let mut at = 0;
-        while at < self.samples.wi.len() {
-            let u = [
-                Lanes::<L>::load_or(&self.u[0][at..], 0.5),
-                Lanes::<L>::load_or(&self.u[1][at..], 0.5),
-            ];
-            let d = self.table.samples(u);
-            self.samples.wi.store(at, self.environment.to_world(d));
-            at += L;
+        let (inversion, count) = (self.inversion, self.samples.wi.len());
+        let mut begun = [Begun::<L>::NONE; STEPS];
+        let mut first = 0;
+        while first < count {
+            let steps = (count - first).div_ceil(L).min(STEPS);
+            for step in 0..steps {
+                let at = first + step * L;
+                let u = [
+                    Lanes::<L>::load_or(&self.u[0][at..], 0.5),
+                    Lanes::<L>::load_or(&self.u[1][at..], 0.5),
+                ];
+                begun[step] = inversion.begin(u);
+            }
+            let mut touched = 0;
+            for step in 0..steps {
+                touched ^= inversion.touch(&begun[step]);
+            }
+            std::hint::black_box(touched);
+            for step in 0..steps {
+                let d = inversion.end(&begun[step]);
+                self.samples
+                    .wi
+                    .store(first + step * L, self.environment.to_world(d));
+            }
+            first += STEPS * L;
         }
     }
 }
@@ -177,33 +204,51 @@ impl Kernel for LookUp<'_> {
     #[inline(always)]
     fn run<const L: usize>(self) {
         let (environment, map) = (self.environment, &self.picture.map);
-        let mut at = 0;
-        while at < self.samples.wi.len() {
-            let d = environment.to_local(self.samples.wi.load::<L>(at));
-            let radiance = map.radiances(map.layout.uv(d));
-            let pdf = match self.by_luminance {
-                Some(factor) => luminance(radiance, factor),
-                None => self.density(d),
-            };
-            pdf.store(&mut self.samples.pdf[at..]);
-            for c in 0..3 {
-                let scaled = radiance[c] * Lanes::splat(environment.scale[c]);
-                scaled.store(&mut self.samples.radiance[c][at..]);
+        let count = self.samples.wi.len();
+        let mut taps = [Taps::<L>::NONE; STEPS];
+        let mut first = 0;
+        while first < count {
+            let steps = (count - first).div_ceil(L).min(STEPS);
+            for step in 0..steps {
+                let d = environment.to_local(self.samples.wi.load::<L>(first + step * L));
+                taps[step] = map.taps(d);
             }
-            at += L;
+            let mut touched = 0;
+            for step in 0..steps {
+                touched ^= map.touch(&taps[step]);
+            }
+            std::hint::black_box(touched);
+            for step in 0..steps {
+                let at = first + step * L;
+                let radiance = map.radiances(&taps[step]);
+                let pdf = match self.by_luminance {
+                    Some(factor) => luminance(radiance, factor),
+                    None => {
+                        let d = environment.to_local(self.samples.wi.load::<L>(at));
+                        self.density(d, &taps[step])
+                    }
+                };
+                pdf.store(&mut self.samples.pdf[at..]);
+                for c in 0..3 {
+                    let scaled = radiance[c] * Lanes::splat(environment.scale[c]);
+                    scaled.store(&mut self.samples.radiance[c][at..]);
+                }
+            }
+            first += STEPS * L;
         }
     }
 }
 
 impl LookUp<'_> {
+    /// - `taps`: those of the picture
     #[inline(always)]
-    fn density<const L: usize>(&self, d: Vec3<Lanes<L>>) -> Lanes<L> {
-        let [u, v] = Layout::LatLong.uv(d);
-        let mut pdf = Lanes([0.0; L]);
-        for lane in 0..L {
-            pdf.0[lane] = self.table.density([u.0[lane], v.0[lane]]);
+    fn density<const L: usize>(&self, d: Vec3<Lanes<L>>, taps: &Taps<L>) -> Lanes<L> {
+        let (map, size) = (&self.picture.map, self.table.size());
+        if map.layout == Layout::LatLong && [map.width, map.height] == size {
+            return self.table.densities(taps);
         }
-        pdf
+        let taps = Taps::new(Layout::LatLong.uv(d), size, false);
+        self.table.densities(&taps)
     }
 }
 

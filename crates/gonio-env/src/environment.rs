@@ -434,7 +434,7 @@ impl Environment {
         let dark = |c: usize| match &self.source {
             Source::Uniform(radiance) => radiance[c] <= 0.0,
             Source::Sky(sky) => sky.is_black(),
-            Source::Picture(p) => p.table.is_none() || p.map.texels.iter().all(|t| t[c] <= 0.0),
+            Source::Picture(p) => p.table.is_none() || p.map.texels().iter().all(|t| t[c] <= 0.0),
         };
         (0..3).all(|c| self.scale[c] <= 0.0 || dark(c))
     }
@@ -512,7 +512,7 @@ fn check_colour(name: &'static str, rgb: [f32; 3]) -> Result<(), EnvError> {
 
 /// Nodes at the picture's own texels.
 fn lat_long_table(map: &Map, method: SamplingMethod) -> Option<SphereTable> {
-    let values = map.texels.iter().map(|t| luminance(*t) as f32).collect();
+    let values = map.texels().iter().map(|t| luminance(*t) as f32).collect();
     SphereTable::with_method(map.width, map.height, values, method)
 }
 

@@ -222,7 +222,7 @@ impl Environment {
         let survey = match &map.origin {
             Some(origin) => &origin.survey,
             None => {
-                own = survey(&view, width, height, &map.texels);
+                own = survey(&view, width, height, map.texels());
                 &own
             }
         };

@@ -18,8 +18,8 @@ pub(crate) struct Map {
     pub layout: Layout,
     pub width: usize,
     pub height: usize,
-    /// Row-major from the top left. Outside a disc: the nearest texel of the disc, so that the rim doesn't darken.
-    pub texels: Vec<[f32; 3]>,
+    /// One more stands behind the last: so four numbers can be read where any texel begins.
+    padded: Vec<[f32; 3]>,
     pub file: Option<PathBuf>,
     pub defects: Defects,
     /// The picture that this one was resampled from, if it was.
@@ -41,46 +41,96 @@ impl Bilinear {
     /// Wraps around in u, clamps in v.
     #[inline(always)]
     pub fn wrapped(uv: [f32; 2], width: usize, height: usize) -> Self {
-        let x = uv[0] * width as f32 - 0.5;
-        let floor = x.floor();
-        let left = if floor < 0.0 {
-            width - 1
-        } else {
-            (floor as usize).min(width - 1)
-        };
-        let right = if left + 1 == width { 0 } else { left + 1 };
-        let (top, bottom, fv) = Self::clamped_axis(uv[1], height);
-        Self {
-            left,
-            right,
-            top,
-            bottom,
-            fu: x - floor,
-            fv,
-        }
+        Self::of(wrapped_axis(uv[0], width as u32), uv[1], height)
     }
 
     /// Clamps in u and v.
     #[inline(always)]
     pub fn clamped(uv: [f32; 2], width: usize, height: usize) -> Self {
-        let (left, right, fu) = Self::clamped_axis(uv[0], width);
-        let (top, bottom, fv) = Self::clamped_axis(uv[1], height);
+        Self::of(clamped_axis(uv[0], width as u32), uv[1], height)
+    }
+
+    #[inline(always)]
+    fn of((left, right, fu): (u32, u32, f32), v: f32, height: usize) -> Self {
+        let (top, bottom, fv) = clamped_axis(v, height as u32);
         Self {
-            left,
-            right,
-            top,
-            bottom,
+            left: left as usize,
+            right: right as usize,
+            top: top as usize,
+            bottom: bottom as usize,
             fu,
             fv,
         }
     }
+}
 
+/// [`Bilinear`] in every lane.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Taps<const L: usize> {
+    /// Upper left and right, lower left and right, each counted row by row.
+    pub corners: [[u64; L]; 4],
+    pub fu: Lanes<L>,
+    pub fv: Lanes<L>,
+}
+
+impl<const L: usize> Taps<L> {
+    /// Room for some.
+    pub const NONE: Self = Self {
+        corners: [[0; L]; 4],
+        fu: Lanes([0.0; L]),
+        fv: Lanes([0.0; L]),
+    };
+
+    /// [`Bilinear::clamped`] or [`Bilinear::wrapped`].
     #[inline(always)]
-    fn clamped_axis(c: f32, n: usize) -> (usize, usize, f32) {
-        let x = (c * n as f32 - 0.5).clamp(0.0, (n - 1) as f32);
-        let low = (x as usize).min(n - 1);
-        (low, (low + 1).min(n - 1), x - low as f32)
+    pub fn new(uv: [Lanes<L>; 2], [width, height]: [usize; 2], clamps: bool) -> Self {
+        let mut taps = Self::NONE;
+        let (mut columns, mut rows) = ([[0; L]; 2], [[0; L]; 2]);
+        let [u, v] = uv;
+        let (width, height) = (width as u32, height as u32);
+        if clamps {
+            for i in 0..L {
+                (columns[0][i], columns[1][i], taps.fu.0[i]) = clamped_axis(u.0[i], width);
+            }
+        } else {
+            for i in 0..L {
+                (columns[0][i], columns[1][i], taps.fu.0[i]) = wrapped_axis(u.0[i], width);
+            }
+        }
+        for i in 0..L {
+            (rows[0][i], rows[1][i], taps.fv.0[i]) = clamped_axis(v.0[i], height);
+        }
+        for k in 0..4 {
+            for i in 0..L {
+                let row = u64::from(rows[k / 2][i]) * u64::from(width);
+                taps.corners[k][i] = row + u64::from(columns[k % 2][i]);
+            }
+        }
+        taps
     }
+}
+
+/// The two of `n` texels along an axis between whose centres a coordinate lies, and how far it is from the first to the second. The
+/// axis goes round.
+#[inline(always)]
+fn wrapped_axis(c: f32, n: u32) -> (u32, u32, f32) {
+    let x = c * n as f32 - 0.5;
+    let floor = x.floor();
+    let left = if floor < 0.0 {
+        n - 1
+    } else {
+        (floor as u32).min(n - 1)
+    };
+    let right = if left + 1 == n { 0 } else { left + 1 };
+    (left, right, x - floor)
+}
+
+/// As [`wrapped_axis`], on an axis that ends.
+#[inline(always)]
+fn clamped_axis(c: f32, n: u32) -> (u32, u32, f32) {
+    let x = (c * n as f32 - 0.5).clamp(0.0, (n - 1) as f32);
+    let low = (x as u32).min(n - 1);
+    (low, (low + 1).min(n - 1), x - low as f32)
 }
 
 impl Map {
@@ -111,7 +161,7 @@ impl Map {
             layout,
             width,
             height,
-            texels: std::mem::take(&mut image.pixels),
+            padded: std::mem::take(&mut image.pixels),
             file: file.map(Path::to_owned),
             defects: Defects::default(),
             origin: None,
@@ -120,7 +170,13 @@ impl Map {
         if layout.is_disc() {
             map.extend_rim();
         }
+        map.padded.push([0.0; 3]);
         Ok(map)
+    }
+
+    /// Row-major from the top left. Outside a disc: the nearest texel of the disc, so that the rim doesn't darken.
+    pub fn texels(&self) -> &[[f32; 3]] {
+        &self.padded[..self.width * self.height]
     }
 
     /// Whether the centre of texel (x, y) shows a direction.
@@ -146,12 +202,12 @@ impl Map {
         let mut image = Image {
             width,
             height,
-            pixels: std::mem::take(&mut self.texels),
+            pixels: std::mem::take(&mut self.padded),
         };
         let file = self.file.clone();
         let shown = |x, y| self.in_domain(x, y);
         self.defects = texels::check(&mut image, shown, file.as_deref(), remedy)?;
-        self.texels = image.pixels;
+        self.padded = image.pixels;
         Ok(())
     }
 
@@ -161,8 +217,8 @@ impl Map {
         let source: Vec<usize> = (0..n * n)
             .map(|k| self.nearest_in_disc(k % n, k / n))
             .collect();
-        let inside = std::mem::take(&mut self.texels);
-        self.texels = source.into_iter().map(|k| inside[k]).collect();
+        let inside = std::mem::take(&mut self.padded);
+        self.padded = source.into_iter().map(|k| inside[k]).collect();
     }
 
     fn nearest_in_disc(&self, x: usize, y: usize) -> usize {
@@ -200,8 +256,8 @@ impl Map {
     #[inline(always)]
     pub fn radiance_in(&self, b: Bilinear) -> [f32; 3] {
         let (top, bottom) = (b.top * self.width, b.bottom * self.width);
-        let t = [self.texels[top + b.left], self.texels[top + b.right]];
-        let l = [self.texels[bottom + b.left], self.texels[bottom + b.right]];
+        let t = [self.padded[top + b.left], self.padded[top + b.right]];
+        let l = [self.padded[bottom + b.left], self.padded[bottom + b.right]];
         let (gu, gv) = (1.0 - b.fu, 1.0 - b.fv);
         let mut rgb = [0.0; 3];
         for c in 0..3 {
@@ -212,38 +268,52 @@ impl Map {
         rgb
     }
 
-    /// [`Map::radiance_in`] at the picture coordinates `uv` of each lane.
+    /// Where the picture is read for the unit direction `d`, in the picture's own frame, in every lane: [`Map::cell`].
     #[inline(always)]
-    pub fn radiances<const L: usize>(&self, uv: [Lanes<L>; 2]) -> [Lanes<L>; 3] {
-        let zero = Lanes([0.0; L]);
-        let mut corners = [[0; L]; 4];
-        let (mut fu, mut fv) = (zero, zero);
-        for lane in 0..L {
-            let b = self.cell([uv[0].0[lane], uv[1].0[lane]]);
-            let (top, bottom) = (b.top * self.width, b.bottom * self.width);
-            corners[0][lane] = top + b.left;
-            corners[1][lane] = top + b.right;
-            corners[2][lane] = bottom + b.left;
-            corners[3][lane] = bottom + b.right;
-            fu.0[lane] = b.fu;
-            fv.0[lane] = b.fv;
-        }
-        let mut texels = [[zero; 3]; 4];
-        // Corner by corner: while one lane waits for memory, so do the others.
-        for k in [0, 2, 1, 3] {
+    pub fn taps<const L: usize>(&self, d: Vec3<Lanes<L>>) -> Taps<L> {
+        // What is laid out otherwise has become lat-long.
+        let uv = match self.layout {
+            Layout::Angular => Layout::Angular.uv(d),
+            Layout::MirrorBall => Layout::MirrorBall.uv(d),
+            _ => Layout::LatLong.uv(d),
+        };
+        Taps::new(uv, [self.width, self.height], self.layout.is_disc())
+    }
+
+    /// Reads something of every texel of the taps, all at once, so that memory is waited for once.
+    #[inline(always)]
+    pub fn touch<const L: usize>(&self, taps: &Taps<L>) -> u32 {
+        let mut bits = 0;
+        for k in 0..4 {
             for lane in 0..L {
-                let texel = &self.texels[corners[k][lane]];
-                for c in 0..3 {
-                    texels[k][c].0[lane] = texel[c];
-                }
+                bits ^= self.padded[taps.corners[k][lane] as usize][0].to_bits();
             }
         }
-        let (gu, gv) = (Lanes::one() - fu, Lanes::one() - fv);
-        let mut rgb = [zero; 3];
+        bits
+    }
+
+    /// [`Map::radiance_in`] in every lane. Calculated lane by lane, on all channels at once: that is how they lie in memory.
+    #[inline(always)]
+    pub fn radiances<const L: usize>(&self, taps: &Taps<L>) -> [Lanes<L>; 3] {
+        let texels = self.padded.as_flattened();
+        let mut found = [[0.0; 4]; L];
+        for lane in 0..L {
+            let at = |k: usize| {
+                let first = 3 * taps.corners[k][lane] as usize;
+                // The fourth number is the next texel's.
+                Lanes::<4>::load(&texels[first..first + 4])
+            };
+            let (fu, fv) = (Lanes::splat(taps.fu.0[lane]), Lanes::splat(taps.fv.0[lane]));
+            let (gu, gv) = (Lanes::one() - fu, Lanes::one() - fv);
+            let high = at(0) * gu + at(1) * fu;
+            let low = at(2) * gu + at(3) * fu;
+            found[lane] = (high * gv + low * fv).0;
+        }
+        let mut rgb = [Lanes([0.0; L]); 3];
         for c in 0..3 {
-            let high = texels[0][c] * gu + texels[1][c] * fu;
-            let low = texels[2][c] * gu + texels[3][c] * fu;
-            rgb[c] = high * gv + low * fv;
+            for lane in 0..L {
+                rgb[c].0[lane] = found[lane][c];
+            }
         }
         rgb
     }
@@ -259,7 +329,7 @@ impl Map {
         let mut best = (-1.0, 0, 0);
         for y in 0..self.height {
             for x in 0..self.width {
-                let l = luminance(self.texels[y * self.width + x]);
+                let l = luminance(self.padded[y * self.width + x]);
                 if l > best.0 && self.in_domain(x, y) {
                     best = (l, x, y);
                 }

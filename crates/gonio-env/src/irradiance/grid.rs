@@ -102,7 +102,7 @@ impl<'a> Grid<'a> {
         let (above, below) = self.rows(band);
         let w = self.map.width;
         let right = if column + 1 == w { 0 } else { column + 1 };
-        let at = |x: usize, y: usize| self.map.texels[y * w + x].map(f64::from);
+        let at = |x: usize, y: usize| self.map.texels()[y * w + x].map(f64::from);
         [
             at(column, above),
             at(right, above),
@@ -119,7 +119,7 @@ impl<'a> Grid<'a> {
             let (above, below) = self.rows(band);
             let w = self.map.width;
             for (row, moment) in [(above, m[4]), (below, m[5])] {
-                for texel in &self.map.texels[row * w..(row + 1) * w] {
+                for texel in &self.map.texels()[row * w..(row + 1) * w] {
                     for k in 0..3 {
                         sum[k] += f64::from(texel[k]) * moment;
                     }

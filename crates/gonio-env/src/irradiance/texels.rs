@@ -35,7 +35,7 @@ impl Environment {
             Source::Picture(p) if p.map.layout == Layout::LatLong => Some(LatLongTexels {
                 width: p.map.width,
                 height: p.map.height,
-                texels: &p.map.texels,
+                texels: p.map.texels(),
                 scale: self.scale,
                 environment: self,
             }),

@@ -2,14 +2,18 @@
 //! weighed in ([`Guide`]).
 
 mod alias;
+mod bands;
 mod nodes;
 mod rows;
 mod tree;
+mod turns;
 
+use crate::lookup::Taps;
 use alias::Alias;
 use gonio_num::lanes::Lanes;
 use gonio_num::{Real, Vec3};
 use nodes::Nodes;
+pub(crate) use rows::Begun;
 use rows::Rows;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
@@ -19,7 +23,7 @@ use tree::Tree;
 ///
 /// | | time | stratified points | memory a texel |
 /// |---|---|---|---|
-/// | `Inversion` | a search in two rows | stay stratified, rows and columns | 13 bytes |
+/// | `Inversion` | a search in two rows | stay stratified, rows and columns | 14 bytes |
 /// | `Hierarchical` | one step a doubling of the picture | stay near each other | 9 bytes |
 /// | `Alias` | fixed | are torn apart | 12 bytes |
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -114,18 +118,15 @@ impl SphereTable {
         }
     }
 
-    /// [`SphereTable::sample`] in every lane.
-    #[inline(always)]
-    pub fn samples<const L: usize>(&self, u: [Lanes<L>; 2]) -> Vec3<Lanes<L>> {
-        if let Form::Inversion(rows) = &self.form {
-            return rows.samples(&self.nodes, u);
+    /// [`SphereTable::sample`] in lanes, if it inverts.
+    pub fn inversion(&self) -> Option<Inversion<'_>> {
+        match &self.form {
+            Form::Inversion(rows) => Some(Inversion {
+                nodes: &self.nodes,
+                rows,
+            }),
+            Form::Hierarchical | Form::Alias(_) => None,
         }
-        let mut d = Vec3::splat(Lanes([0.0; L]));
-        for lane in 0..L {
-            let one = self.sample([u[0].0[lane], u[1].0[lane]]);
-            (d.x.0[lane], d.y.0[lane], d.z.0[lane]) = (one.x, one.y, one.z);
-        }
-        d
     }
 
     /// Density over the value relative to the largest.
@@ -137,6 +138,17 @@ impl SphereTable {
     #[inline(always)]
     pub fn density(&self, uv: [f32; 2]) -> f32 {
         self.nodes.density(uv)
+    }
+
+    /// Columns and rows of the grid that the density stands on.
+    pub fn size(&self) -> [usize; 2] {
+        [self.nodes.width, self.nodes.height]
+    }
+
+    /// [`SphereTable::density`] in every lane, at lat-long taps of a grid of this [`SphereTable::size`].
+    #[inline(always)]
+    pub fn densities<const L: usize>(&self, taps: &Taps<L>) -> Lanes<L> {
+        self.nodes.densities(taps)
     }
 
     /// As [`SphereTable::sample`], weighed by the cosine with a normal. Nothing where no light is above the horizon.
@@ -154,6 +166,34 @@ impl SphereTable {
     #[inline(always)]
     fn tree(&self) -> &Tree {
         self.tree.get_or_init(|| Tree::new(&self.nodes))
+    }
+}
+
+/// Sampling by inversion, in lanes. It comes in two steps, so that [`Inversion::touch`] can read from memory what the second needs, of
+/// many points at once.
+#[derive(Clone, Copy)]
+pub(crate) struct Inversion<'a> {
+    nodes: &'a Nodes,
+    rows: &'a Rows,
+}
+
+impl Inversion<'_> {
+    /// The first step, from `u` in [0, 1)².
+    #[inline(always)]
+    pub fn begin<const L: usize>(self, u: [Lanes<L>; 2]) -> Begun<L> {
+        self.rows.begin(self.nodes, u)
+    }
+
+    /// Reads what the second step needs; of no other use.
+    #[inline(always)]
+    pub fn touch<const L: usize>(self, begun: &Begun<L>) -> u32 {
+        self.rows.touch(begun)
+    }
+
+    /// The second step: a unit direction.
+    #[inline(always)]
+    pub fn end<const L: usize>(self, begun: &Begun<L>) -> Vec3<Lanes<L>> {
+        self.rows.end(self.nodes, begun)
     }
 }
 

@@ -1,6 +1,9 @@
 //! [`Nodes`], a piecewise bilinear density over the sphere of directions.
 
-use crate::lookup::Bilinear;
+// Loops over an index are what vectorises.
+#![allow(clippy::needless_range_loop)]
+
+use crate::lookup::{Bilinear, Taps};
 use gonio_num::lanes::Lanes;
 use gonio_num::{DoubleLanes, Real, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -51,19 +54,52 @@ fn integrals<R: Real>(low: R, (sin_low, cos_low): (R, R), high: R, (sin, cos): (
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Band<R> {
     /// The angle from the zenith at its upper end.
-    pub low: R,
-    /// Sine and cosine there, and at its lower end.
-    pub at_low: (R, R),
-    pub at_high: (R, R),
+    low: R,
+    /// Sine and cosine there.
+    at_low: (R, R),
     /// Its width as an angle.
-    pub width: R,
-    /// [`Nodes::moments`].
-    pub moments: [R; 2],
+    width: R,
+    /// The value at its upper end, and how fast it rises.
+    above: R,
+    slope: R,
+    /// ∫ of the value times sin θ dθ.
+    mass: R,
+    /// The value times sin θ at both ends.
+    products: [R; 2],
     /// Whether bands are so narrow that a short series gives sines and cosines within one.
-    pub narrow: bool,
+    narrow: bool,
 }
 
+/// The numbers that a [`Band`] is made of.
+pub(super) const BAND_NUMBERS: usize = 9;
+
 impl<R: Real> Band<R> {
+    /// The band of these [`Band::numbers`].
+    #[inline(always)]
+    pub fn of(numbers: [R; BAND_NUMBERS], narrow: bool) -> Self {
+        let [low, sin, cos, width, above, slope, mass, first, last] = numbers;
+        Self {
+            low,
+            at_low: (sin, cos),
+            width,
+            above,
+            slope,
+            mass,
+            products: [first, last],
+            narrow,
+        }
+    }
+
+    /// All but [`Nodes::is_narrow`], for a table.
+    pub fn numbers(&self) -> [R; BAND_NUMBERS] {
+        let (sin, cos) = self.at_low;
+        let [first, last] = self.products;
+        let (low, width, above) = (self.low, self.width, self.above);
+        [
+            low, sin, cos, width, above, self.slope, self.mass, first, last,
+        ]
+    }
+
     /// Sine and cosine at the angle `low` + `turn`, 0 ≤ turn ≤ width.
     ///
     /// In a narrow band turn < 1/16: the series leave out less than 1/16⁷ / 7! = 7e-13 and 1/16⁸ / 8! = 6e-15.
@@ -81,23 +117,25 @@ impl<R: Real> Band<R> {
         (s * cos + c * sin, c * cos - s * sin)
     }
 
-    /// The place t in [0, 1] where the running integral of a value that goes linearly in θ from `above` to `below`,
-    /// times sin θ, reaches the fraction `u`; with sin and cos of the angle.
+    /// The place t in [0, 1] where the running integral of the value, which goes linearly in θ, times sin θ, reaches the fraction
+    /// `u`; with sin and cos of the angle.
     ///
     /// Newton's method on the closed form, from where the product is taken to be linear in θ: one step is the rule.
     #[inline(always)]
-    pub fn invert(&self, above: R, below: R, u: R) -> (R, [R; 2]) {
+    pub fn invert(&self, u: R) -> (R, [R; 2]) {
         let Self {
             low,
             at_low,
-            at_high,
             width,
+            above,
+            slope,
+            mass,
+            products,
             ..
         } = *self;
-        let target = u * (self.moments[0] * above + self.moments[1] * below);
+        let target = u * mass;
         // At a pole both ends of the product may be 0: the guess is then the middle.
-        let guess = sample_linear(above * at_low.0, below * at_high.0, u).saturate();
-        let slope = (below - above) / width;
+        let guess = sample_linear(products[0], products[1], u).saturate();
         let [t] = R::repeat(8, [guess], |_, [t]| {
             let turn = t * width;
             let (sin, cos) = self.sin_cos(turn);
@@ -226,16 +264,36 @@ impl Nodes {
         (f64::from(value) * self.scale) as f32
     }
 
-    /// What the inversion of a band needs to know of it.
+    /// [`Nodes::density`] in every lane, at taps of a grid of this size.
     #[inline(always)]
-    pub fn band(&self, band: usize) -> Band<f64> {
+    pub fn densities<const L: usize>(&self, taps: &Taps<L>) -> Lanes<L> {
+        let mut values = [Lanes([0.0; L]); 4];
+        for k in 0..4 {
+            for lane in 0..L {
+                values[k].0[lane] = self.values[taps.corners[k][lane] as usize];
+            }
+        }
+        let (gu, gv) = (Lanes::one() - taps.fu, Lanes::one() - taps.fv);
+        let high = values[0] * gu + values[1] * taps.fu;
+        let low = values[2] * gu + values[3] * taps.fu;
+        let value = high * gv + low * taps.fv;
+        (value.to_double() * DoubleLanes::splat(self.scale)).to_single()
+    }
+
+    /// What the inversion of a band needs to know of it, of a value that goes from `above` to `below`.
+    #[inline(always)]
+    pub fn band(&self, band: usize, above: f64, below: f64) -> Band<f64> {
         let [low, high] = self.band_ends(band);
+        let [at_low, at_high] = [self.sin_cos[band], self.sin_cos[band + 1]];
+        let width = high - low;
         Band {
             low,
-            at_low: self.sin_cos[band],
-            at_high: self.sin_cos[band + 1],
-            width: high - low,
-            moments: self.moments[band],
+            at_low,
+            width,
+            above,
+            slope: (below - above) / width,
+            mass: self.band_mass(band, above, below),
+            products: [above * at_low.0, below * at_high.0],
             narrow: self.is_narrow(),
         }
     }
@@ -249,7 +307,7 @@ impl Nodes {
     /// [`Band::invert`].
     #[inline(always)]
     pub fn invert_band(&self, band: usize, above: f64, below: f64, u: f64) -> (f64, [f64; 2]) {
-        self.band(band).invert(above, below, u)
+        self.band(band, above, below).invert(u)
     }
 
     /// A point of a cell with the cell's share of the density, from `u` in [0, 1]²: u\[1] chooses θ, u\[0] the longitude.
