@@ -5,7 +5,8 @@ Needs mitsuba 3.9 and numpy in the Python that runs it, libLLVM, and a release b
 
     python benches/peers/bench_scenes.py --gonio target/release/gonio --work OUT [SCENE ...]
 
-Both follow paths of seven reflections at 512 x 512 pixels, plain multiple importance sampling, box filter. Mitsuba's scene is loaded and its
+Both follow paths of seven reflections at 512 x 512 pixels, plain multiple importance sampling, box filter. Gonio is measured twice: with Mitsuba's choices, lights chosen
+evenly and independent random numbers, and as it is when nobody says anything, with a tree of lights and Sobol' points. Mitsuba's scene is loaded and its
 kernel compiled before; of Gonio, the time of an image of one sample is taken off. The medians of `--runs` pairs are compared. Seconds of
 user and system time of all threads: other work on the machine slows both.
 """
@@ -44,9 +45,12 @@ def mitsuba_seconds(scene, spp, seed):
     return cpu_seconds(resource.RUSAGE_SELF) - start
 
 
-def gonio_seconds(args, toml, spp):
+ALIKE = "--light-choice uniform --sampler independent"
+
+
+def gonio_seconds(args, toml, spp, options):
     command = [args.gonio, "render", toml, "-o", args.work / "bench.exr", "--size", f"{RESOLUTION}x{RESOLUTION}"]
-    command += ["--filter", "box", "--max-bounces", 7, "--spp", spp, "--quiet", *args.options.split()]
+    command += ["--filter", "box", "--max-bounces", 7, "--spp", spp, "--quiet", *options.split(), *args.options.split()]
     start = cpu_seconds(resource.RUSAGE_CHILDREN)
     subprocess.run([str(x) for x in command], check=True)
     return cpu_seconds(resource.RUSAGE_CHILDREN) - start
@@ -65,20 +69,25 @@ def main():
     args.work.mkdir(parents=True, exist_ok=True)
     convert.write_panorama = plain_panorama
     module = compare_images.scenes_of(args.peers)
-    print("million samples a CPU second   gonio  mitsuba  ratio   load")
+    print("million samples a CPU second   gonio  mitsuba  ratio  gonio by itself  ratio   load")
     for name in args.scenes:
         adapted = convert.adapted(dict(module.get(name, RESOLUTION)), compare_images.DIFFUSE)
         toml = convert.write(name, adapted, args.work.resolve())
         scene = mi.load_dict(adapted)
         mitsuba_seconds(scene, args.spp, 1)
-        theirs, ours = [], []
+        theirs, ours = [], {ALIKE: [], "": []}
         for run in range(args.runs):
             theirs.append(mitsuba_seconds(scene, args.spp, 2 + run))
-            start = gonio_seconds(args, toml, 1)
-            ours.append((gonio_seconds(args, toml, args.spp) - start) * args.spp / (args.spp - 1))
+            for options, seconds in ours.items():
+                start = gonio_seconds(args, toml, 1, options)
+                seconds.append((gonio_seconds(args, toml, args.spp, options) - start) * args.spp / (args.spp - 1))
         samples = RESOLUTION**2 * args.spp / 1e6
-        gonio, mitsuba = samples / np.median(ours), samples / np.median(theirs)
-        print(f"{name:30s} {gonio:6.2f} {mitsuba:8.2f} {gonio / mitsuba:6.2f} {os.getloadavg()[0]:6.1f}", flush=True)
+        mitsuba = samples / np.median(theirs)
+        alike, itself = (samples / np.median(seconds) for seconds in ours.values())
+        print(
+            f"{name:30s} {alike:6.2f} {mitsuba:8.2f} {alike / mitsuba:6.2f} {itself:16.2f} {itself / mitsuba:6.2f} {os.getloadavg()[0]:6.1f}",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":
