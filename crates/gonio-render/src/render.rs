@@ -171,6 +171,8 @@ pub fn expose(
     let target = options.target;
     let (start, before) = (Instant::now(), exposure.elapsed);
     let (first, taken_before) = (exposure.samples.start, exposure.film.samples());
+    let mut all = taken_before;
+    let pixels = u64::from(options.width) * u64::from(options.height);
     let stop = |exposure: &Exposure, noise: Option<f64>, next: &Next| {
         let whole = matches!(next, Next::Pass { begun: false, .. });
         if matches!(next, Next::Nothing) {
@@ -213,7 +215,14 @@ pub fn expose(
             &wanted,
             worth.as_ref(),
         );
-        exposure.samples.end = first + exposure.film.samples_per_pixel();
+        // To look at all pixels takes its time.
+        if active.is_none() {
+            exposure.samples.end = done + count;
+            all += pixels * u64::from(count);
+        } else {
+            exposure.samples.end = first + exposure.film.samples_per_pixel();
+            all = exposure.film.samples();
+        }
         exposure.elapsed = before + start.elapsed();
         let share = match active {
             None => 1.0,
@@ -221,9 +230,7 @@ pub fn expose(
         };
         let report = Progress {
             samples: match target.goal() {
-                Some(Goal::Mean(_)) => {
-                    (exposure.film.samples() / exposure.film.pixels().len() as u64) as u32
-                }
+                Some(Goal::Mean(_)) => (all / pixels) as u32,
                 _ => exposure.samples.end - first,
             },
             of: target.samples - first,
@@ -247,8 +254,7 @@ pub fn expose(
             None => {}
         }
         let left = target.time.map(|t| t.saturating_sub(report.elapsed));
-        let taken =
-            (exposure.film.samples() - taken_before) as f64 / exposure.film.pixels().len() as f64;
+        let taken = (all - taken_before) as f64 / pixels as f64;
         piece = samples_within(
             left.unwrap_or(LONGEST_PIECE),
             taken / share,
