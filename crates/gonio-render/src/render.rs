@@ -2,8 +2,8 @@
 
 use crate::adaptive::{self, Active, Goal};
 use crate::film::{Film, Kept};
+use crate::integrator::EnvironmentSampling;
 use crate::integrator::worth::Worth;
-use crate::integrator::{EnvironmentSampling, Path};
 use crate::pass::{Wanted, take_pass};
 use crate::{Exposure, Integrator, PixelFilter, RayCounts, RenderError, Screen};
 use gonio_radiometry::sequence::SamplerKind;
@@ -357,16 +357,17 @@ fn check(options: &RenderOptions, exposure: &Exposure) -> Result<(), RenderError
             "pixels that are independent of each other",
         );
     }
-    if let Integrator::Path(Path {
-        environment: EnvironmentSampling::Product(_),
-        light_candidates: 2..,
-        ..
-    }) = options.integrator
+    if let Integrator::Path(path) = options.integrator
+        && matches!(path.environment, EnvironmentSampling::Product(_))
+        && path.light_candidates > 1
     {
         return fault(
-            "light candidates",
-            "several, with product sampling of the environment".into(),
-            "1, or another way to sample the environment: product sampling has candidates of its own",
+            "light_candidates",
+            format!(
+                "{} beside product sampling of the environment",
+                path.light_candidates
+            ),
+            "1: product sampling has candidates of its own",
         );
     }
     let film = &exposure.film;

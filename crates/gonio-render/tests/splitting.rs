@@ -3,12 +3,13 @@
 
 mod support;
 
-use gonio_env::Environment;
+use gonio_env::{Candidates, Environment};
 use gonio_num::{Affine3, Vec3};
-use gonio_render::integrator::Path;
-use gonio_render::{Film, Integrator, RenderOptions};
+use gonio_render::integrator::{EnvironmentSampling, Path};
+use gonio_render::{Film, Integrator, RenderOptions, render};
 use gonio_scene::{Camera, Light, Scene, SceneBuilder, Shape};
 use gonio_verify::statistics::{Moments, t_test};
+use std::ops::ControlFlow;
 use support::*;
 
 /// Surfaces that differ in what finds light on them, lamps that a ray meets and one that it doesn't, under a sky.
@@ -112,5 +113,30 @@ fn the_same_picture_with_less_noise() {
             && left[0].max(left[1]) < 0.95
             && left[3..].iter().all(|l| (left[0]..0.95).contains(l)),
         "{left:?}"
+    );
+}
+
+#[test]
+fn product_sampling_has_candidates_of_its_own() {
+    let scene = scene();
+    let path = Path {
+        environment: EnvironmentSampling::Product(Candidates::default()),
+        light_candidates: 2,
+        ..Path::default()
+    };
+    let camera = Camera::look_at(
+        Vec3::new(0.0, 1.0, 4.0),
+        Vec3::zero(),
+        Vec3::new(0.0, 1.0, 0.0),
+        45.0,
+    );
+    let options = options(Integrator::Path(path), SAMPLERS[0], 4, 1);
+    let taken = render(&scene, &camera.unwrap(), &options, |_, _| {
+        ControlFlow::Continue(())
+    });
+    let message = taken.unwrap_err().to_string();
+    assert!(
+        message.starts_with("light_candidates is 2 beside product sampling"),
+        "{message}"
     );
 }

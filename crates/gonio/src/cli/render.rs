@@ -225,6 +225,12 @@ enum SamplerName {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Failure> {
     progress::listen();
     arguments.picture.check(arguments.reweight_fireflies)?;
+    if arguments.env_sampling == EnvSamplingName::Product && arguments.light_candidates > 1 {
+        let message =
+            "--light-candidates beside --env-sampling product, which has candidates of its own";
+        return Err(Failure::usage(message)
+            .with_help("leave one of the two out; --env-candidates is for the environment"));
+    }
     let chosen = range::of(arguments, |name| std::env::var(name).ok())?;
     let outputs = outputs(arguments, &chosen)?;
     let range = chosen.samples.clone();

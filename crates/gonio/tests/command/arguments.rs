@@ -91,6 +91,8 @@ fn values_out_of_range_name_the_range() {
         ("--threads", "-2", "from 1 to 4096"),
         ("--seed", "-1", "from 0"),
         ("--max-bounces", "x", "from 0"),
+        ("--light-candidates", "0", "from 1 to 64"),
+        ("--light-candidates", "-1", "from 1"),
         ("--exposure", "nan", "finite"),
         ("--env-rotate", "inf", "finite"),
         ("--env", "uniform:-1", "≥ 0"),
@@ -127,6 +129,18 @@ fn values_out_of_range_name_the_range() {
             &["θ from 0 to 180"],
         );
     }
+}
+
+#[test]
+fn what_does_not_go_together_is_named() {
+    let place = Place::new();
+    let both = ["--light-candidates", "2", "--env-sampling", "product"];
+    let render = [&["render"][..], &both].concat();
+    place.bad(
+        &render,
+        2,
+        &["--light-candidates", "leave one of the two out"],
+    );
 }
 
 #[test]

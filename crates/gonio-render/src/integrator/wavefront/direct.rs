@@ -118,7 +118,7 @@ impl Direct {
     }
 
     /// Takes what was drawn last as the next candidate of each point, of which one is kept with a probability proportional to what it would
-    /// reflect, as [`Path::resample`](crate::integrator::Path) does.
+    /// reflect, as `Path::resample_lights` does.
     ///
     /// - `which`: the how many-th it is
     pub fn consider(&mut self, which: u32, vertices: &Vertices<'_>, bounce: u32) {
@@ -287,7 +287,7 @@ impl Kernel for Consider<'_> {
             (kept_g, g),
             (kept_b, b),
         ];
-        // From here on 1 where the new one is kept.
+        // 1 where the new one is kept.
         let mut taken = [0_u32; super::WAVE];
         let taken = &mut taken[..count];
         for i in 0..count {
