@@ -102,6 +102,8 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
 
   useEffect(() => {
     let gone = false;
+    // A frame may be done between the moment when the page no longer has these and the end of this effect.
+    const [surface, names] = [canvas.current!, overlay.current!];
     const stops: (() => void)[] = [];
     const first = new Promise<void>((resolve) => stops.push(effect(() => (begun.value ? resolve() : undefined))));
     first
@@ -109,10 +111,10 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
       .then(({ LobeScene, REACH }) => {
         if (gone) return;
         let newest = 0;
-        const made = new LobeScene(canvas.current!, () => {
+        const made = new LobeScene(surface, () => {
           // Until there is something to show the page need not wait for the graphics card.
-          canvas.current!.hidden = false;
-          place(made, overlay.current!, REACH);
+          surface.hidden = false;
+          place(made, names, REACH);
           if (newest > 0) drawn("lobe", newest);
           newest = 0;
           stir();
@@ -127,7 +129,7 @@ function Space({ size, scene }: { size: Size; scene: { current: LobeScene | null
           effect(() => {
             theme.value;
             made.setLight(wi.value, colours());
-            place(made, overlay.current!, REACH);
+            place(made, names, REACH);
           }),
           effect(() => {
             theme.value;
