@@ -110,6 +110,7 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, required=True, help="folder for scenes and images")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--seeds", type=int, default=4)
+    parser.add_argument("--options", action="append", help="of Gonio, as they are, in place of the list; may be said several times")
     parser.add_argument("--denoise", action="store_true", help="a second table, of denoised pictures")
     parser.add_argument("--reference", type=int, default=8192, help="samples of the reference")
     args = parser.parse_args()
@@ -128,8 +129,8 @@ def main():
             found = (1 / (seconds * off), "{}, roulette after {}, {} samples".format(*setting[:2], args.spp * setting[2]), off, seconds)
             best["theirs"] = max(best.get("theirs", found), found)
         under_a_sky = any(isinstance(v, dict) and v.get("type") == "envmap" for v in adapted.values())
-        for options, times in OURS:
-            options = f"{options} {SKY}".strip() if under_a_sky else options
+        for options, times in [(o, 1) for o in args.options] if args.options else OURS:
+            options = f"{options} {SKY}".strip() if under_a_sky and not args.options else options
             pictures, seconds, filtered, more = ours(toml, options, times, args)
             if filtered:
                 off = error(filtered, mean, biased=True)

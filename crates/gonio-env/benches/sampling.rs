@@ -3,13 +3,13 @@
 //! `cargo bench -p gonio-env --bench sampling` prints two tables. Efficiency is 1 / (time × mean squared error) of the radiance that a
 //! surface reflects, relative to luminance sampling joined with the reflection function's own: above 1 the same error takes less time.
 
-use gonio_env::{Candidates, Environment, Guide, Layout, Reflected, SamplingMethod};
+use gonio_env::{Candidates, EnvSamples, Environment, Guide, Layout, Reflected, SamplingMethod};
 use gonio_image::Image;
-use gonio_num::{Frame, Vec3};
+use gonio_num::{Frame, Vec3, Vectors};
 use gonio_radiometry::sequence::Rng;
 use gonio_radiometry::warp::{cosine_power_hemisphere, cosine_power_hemisphere_density};
 use std::hint::black_box;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 fn panorama(sun: f32) -> Environment {
     let image = Image::from_fn(1024, 512, |x, y| {
@@ -32,6 +32,31 @@ fn time(mut call: impl FnMut(&mut Rng)) -> f64 {
         call(&mut rng);
     }
     start.elapsed().as_secs_f64() / f64::from(count)
+}
+
+/// Seconds a point of `sample_many` and of `look_up_many`, the medians over waves of 1024 points.
+fn time_many(env: &Environment, guide: Guide) -> (f64, f64) {
+    const WAVE: usize = 1024;
+    let mut rng = Rng::from_name("time_many");
+    let mut from = Vectors::default();
+    from.resize(WAVE);
+    let mut samples = EnvSamples::default();
+    let (mut drawn, mut found) = (Vec::new(), Vec::new());
+    for _ in 0..200 {
+        let mut numbers = || (0..WAVE).map(|_| rng.next_f32()).collect::<Vec<f32>>();
+        let (u, v) = (numbers(), numbers());
+        let start = Instant::now();
+        env.sample_many(guide, &from, [&u, &v], black_box(&mut samples));
+        drawn.push(start.elapsed());
+        let start = Instant::now();
+        env.look_up_many(guide, &from, black_box(&mut samples));
+        found.push(start.elapsed());
+    }
+    let median = |mut times: Vec<Duration>| {
+        times.sort_unstable();
+        times[times.len() / 2].as_secs_f64() / WAVE as f64
+    };
+    (median(drawn), median(found))
 }
 
 /// A lobe of cosine to a power about `axis`, reflecting all: f cosθ = its density, above the horizon of `n`.
@@ -119,6 +144,17 @@ fn main() {
             black_box(env.sample_by(guide, [rng.next_f32(), rng.next_f32()]));
         });
         println!("{name:<16}{:8.0}", 1e9 * one);
+    }
+    for (name, guide) in [
+        ("many, luminance", Guide::Luminance),
+        ("many, compensated", Guide::Compensated),
+    ] {
+        let (drawn, found) = time_many(&env, guide);
+        println!(
+            "{name:<18}{:8.0}, of which looked up {:.0}",
+            1e9 * drawn,
+            1e9 * found
+        );
     }
     // A shadow ray and the ray of the reflection function cost what no bench of this crate can see: both are given 500 ns each, so that
     // the joined strategies pay for two and the product for one.

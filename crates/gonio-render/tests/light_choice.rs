@@ -8,8 +8,7 @@ use gonio_num::{Affine3, Vec3};
 use gonio_radiometry::sequence::Rng;
 use gonio_render::integrator::{EnvironmentSampling, LightChoice, Path};
 use gonio_render::{Film, Integrator, RenderOptions};
-use gonio_scene::{Camera, Light, Scene, SceneBuilder, Shape, TriangleMesh};
-use gonio_verify::statistics::{Moments, t_test};
+use gonio_scene::{Light, Scene, SceneBuilder, Shape, TriangleMesh};
 use std::sync::Arc;
 use support::*;
 
@@ -80,18 +79,11 @@ fn scene() -> Scene {
 }
 
 fn shot(scene: &Scene, path: Path, name: &str) -> Film {
-    let camera = Camera::look_at(
-        Vec3::new(0.0, 1.6, 4.0),
-        Vec3::new(0.0, 0.5, 0.0),
-        Vec3::new(0.0, 1.0, 0.0),
-        45.0,
-    )
-    .unwrap();
     let options = RenderOptions {
         seed: Rng::from_name(name).next_u64(),
         ..options(Integrator::Path(path), SAMPLERS[0], 32, 256)
     };
-    picture(scene, &camera, &options)
+    picture(scene, &camera_before(), &options)
 }
 
 /// Pixel by pixel the difference of two pictures is 0 in the mean, by a t-test over the pixels. The control is a picture that is 5 % brighter: where a
@@ -120,13 +112,7 @@ fn the_same_picture_by_every_choice() {
         for choice in [LightChoice::Power, LightChoice::Uniform] {
             let other = by(choice);
             for c in 0..3 {
-                let off = |scale: f64| {
-                    let mut moments = Moments::new();
-                    for (a, b) in tree.pixels().iter().zip(other.pixels()) {
-                        moments.push(scale * a.mean()[c] - b.mean()[c]);
-                    }
-                    t_test(&moments, 0.0).p_value
-                };
+                let off = |brighter| p_of_difference(&tree, &other, c, brighter);
                 let name = format!("{choice:?}, {environment:?}, channel {c}");
                 assert!(off(1.0) > FALSE_POSITIVE, "{name}: {}", off(1.0));
                 assert!(off(1.05) < FALSE_POSITIVE, "{name}: the control passed");

@@ -8,7 +8,6 @@ use gonio_num::{Affine3, Vec3};
 use gonio_render::integrator::{Path, Roulette};
 use gonio_render::{Exposure, Integrator, RenderOptions, expose};
 use gonio_scene::{Camera, Light, Scene, SceneBuilder, Shape};
-use gonio_verify::statistics::{Moments, t_test};
 use std::ops::ControlFlow;
 use support::*;
 
@@ -95,11 +94,7 @@ fn shot(scene: &Scene, path: Path, seed: u64) -> Exposure {
 
 /// The probability that two pictures differ as much by chance, of a channel, by a t-test over the pixels; `scale` for the second.
 fn alike(a: &Exposure, b: &Exposure, channel: usize, scale: f64) -> f64 {
-    let mut moments = Moments::new();
-    for (a, b) in a.film.pixels().iter().zip(b.film.pixels()) {
-        moments.push(a.mean()[channel] - scale * b.mean()[channel]);
-    }
-    t_test(&moments, 0.0).p_value
+    p_of_difference(&b.film, &a.film, channel, scale)
 }
 
 /// The controls: a picture that is 3 % brighter, and one without the light of the last reflections, which a roulette loses that doesn't let the paths that go on

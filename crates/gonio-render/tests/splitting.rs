@@ -7,8 +7,7 @@ use gonio_env::{Candidates, Environment};
 use gonio_num::{Affine3, Vec3};
 use gonio_render::integrator::{EnvironmentSampling, Path};
 use gonio_render::{Film, Integrator, RenderOptions, render};
-use gonio_scene::{Camera, Light, Scene, SceneBuilder, Shape};
-use gonio_verify::statistics::{Moments, t_test};
+use gonio_scene::{Light, Scene, SceneBuilder, Shape};
 use std::ops::ControlFlow;
 use support::*;
 
@@ -49,18 +48,11 @@ fn scene() -> Scene {
 }
 
 fn shot(scene: &Scene, path: Path, seed: u64) -> Film {
-    let camera = Camera::look_at(
-        Vec3::new(0.0, 1.6, 4.0),
-        Vec3::new(0.0, 0.5, 0.0),
-        Vec3::new(0.0, 1.0, 0.0),
-        45.0,
-    )
-    .unwrap();
     let options = RenderOptions {
         seed,
         ..options(Integrator::Path(path), SAMPLERS[0], 32, 64)
     };
-    picture(scene, &camera, &options)
+    picture(scene, &camera_before(), &options)
 }
 
 /// Mean over pixels of the variance of a pixel, in the first channel.
@@ -92,13 +84,7 @@ fn the_same_picture_with_less_noise() {
         };
         let split = shot(&scene, path, seed);
         for c in 0..3 {
-            let off = |scale: f64| {
-                let mut moments = Moments::new();
-                for (a, b) in alone.pixels().iter().zip(split.pixels()) {
-                    moments.push(scale * a.mean()[c] - b.mean()[c]);
-                }
-                t_test(&moments, 0.0).p_value
-            };
+            let off = |brighter| p_of_difference(&alone, &split, c, brighter);
             assert!(off(1.0) > FALSE_POSITIVE, "{path:?}, channel {c}");
             assert!(
                 off(1.03) < FALSE_POSITIVE,
@@ -124,14 +110,8 @@ fn product_sampling_has_candidates_of_its_own() {
         light_candidates: 2,
         ..Path::default()
     };
-    let camera = Camera::look_at(
-        Vec3::new(0.0, 1.0, 4.0),
-        Vec3::zero(),
-        Vec3::new(0.0, 1.0, 0.0),
-        45.0,
-    );
     let options = options(Integrator::Path(path), SAMPLERS[0], 4, 1);
-    let taken = render(&scene, &camera.unwrap(), &options, |_, _| {
+    let taken = render(&scene, &camera_before(), &options, |_, _| {
         ControlFlow::Continue(())
     });
     let message = taken.unwrap_err().to_string();

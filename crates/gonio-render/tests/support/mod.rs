@@ -119,6 +119,26 @@ pub fn camera_above(height: f32, fov_deg: f32) -> Camera {
     .unwrap()
 }
 
+/// Looks at the floor's middle from the height of an eye.
+pub fn camera_before() -> Camera {
+    Camera::look_at(
+        Vec3::new(0.0, 1.6, 4.0),
+        Vec3::new(0.0, 0.5, 0.0),
+        Vec3::new(0.0, 1.0, 0.0),
+        45.0,
+    )
+    .unwrap()
+}
+
+/// How likely two right pictures differ as much in channel `c`, the first of them made brighter by a factor: a t-test of the difference pixel by pixel.
+pub fn p_of_difference(a: &Film, b: &Film, c: usize, brighter: f64) -> f64 {
+    let mut moments = Moments::new();
+    for (a, b) in a.pixels().iter().zip(b.pixels()) {
+        moments.push(brighter * a.mean()[c] - b.mean()[c]);
+    }
+    t_test(&moments, 0.0).p_value
+}
+
 pub fn options(integrator: Integrator, sampler: SamplerKind, side: u32, spp: u32) -> RenderOptions {
     RenderOptions {
         width: side,
